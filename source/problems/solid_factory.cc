@@ -26,6 +26,24 @@ namespace PeriDeal
 
   namespace
   {
+    template <int dim>
+    void refuse_breaking(const Scene<dim> &scene)
+    {
+      const std::vector<Entry> &entries = scene.elasticity.entries();
+      const std::string &way = std::find_if(entries.begin(), entries.end(), [](const Entry &entry) {
+                                 return entry.name == "Breaking";
+                               })->text;
+      scene.elasticity.refuse(
+        way != "auto" && !scene.material.fracture_energy && !scene.material.critical_stretch,
+        "Breaking",
+        "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
+      scene.elasticity.refuse(
+        way == "in motion" && runs(scene, ModelKind::coupled),
+        "Breaking",
+        "'in motion' is for 'Models = peridynamics'; bonds of 'coupled' break 'at rest'. Use that, or leave the entry out.");
+    }
+
+
     /** What only bonds have, or only those of one model, in a scene in which there are none. */
     template <int dim>
     void refuse_what_no_model_has(const Scene<dim> &scene)
@@ -49,6 +67,7 @@ namespace PeriDeal
       material.refuse(material.scatter && runs(scene, ModelKind::coupled),
                       "Weibull modulus",
                       "is for 'Models = peridynamics', not 'coupled'; leave the entry out.");
+      refuse_breaking(scene);
       if (bonds)
         return;
       pd.refuse(

@@ -127,7 +127,9 @@ namespace PeriDeal
     constexpr double from = 3., to = 42.; // degrees
     if constexpr (dim == 2)
       {
-        if (!breaks(scene) || !scene.elasticity.is_static() || !scene.domain.has_lattice())
+        const bool at_rest = !scene.elasticity.breaks_in_motion || runs(scene, ModelKind::coupled);
+        if (!breaks(scene) || !scene.elasticity.is_static() || !at_rest ||
+            !scene.domain.has_lattice())
           return;
         for (unsigned int k = 0; k < scene.cracks.cracks.size(); ++k)
           {
@@ -139,8 +141,8 @@ namespace PeriDeal
               notes.push_back(
                 "crack " + std::to_string(k + 1) + " (section 'Cracks') lies at " +
                 rounded_text(angle) +
-                " degrees to the rows of nodes. In slow loading bonds break in groups, and it turns into the rows, where fewest are in its way. "
-                "With 'Solver = dynamics' in section 'Elasticity' it does not, nor where the lattice lies along it.");
+                " degrees to the rows of nodes. In slow loading bonds break in groups where bodies are at rest, and it turns into the rows, where fewest are in its way. "
+                "With 'Breaking = in motion' in section 'Elasticity', which is for 'Models = peridynamics', it hardly does, with 'Solver = dynamics' it does not, nor where the lattice lies along it.");
           }
       }
   }

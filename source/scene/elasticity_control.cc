@@ -87,11 +87,12 @@ namespace PeriDeal
     declare(
       "Breaking",
       EntryType::choice,
-      "in motion",
+      "auto",
       "",
-      "Of bodies at rest whose bonds break: once the first bonds have broken, the others break in a damped motion from equilibrium to equilibrium; or `at rest`, "
-      "in one equilibrium after the other, in each those whose stretch is at least 0.9 of the largest. Then slow cracks are drawn to the rows of the lattice.",
-      {"in motion", "at rest"});
+      "Of bodies at rest whose bonds break, `in motion`: once the first bonds have broken, the others break in a damped motion from equilibrium to equilibrium; or `at rest`, "
+      "in one equilibrium after the other, in each those whose stretch is at least 0.9 of the largest. Then slow cracks are drawn to the rows of the lattice. "
+      "`auto` is in motion; bonds of `Models = coupled` always break at rest.",
+      {"auto", "in motion", "at rest"});
     parse();
   }
 
@@ -171,6 +172,7 @@ namespace PeriDeal
         "Contact",
         "found 'true', but faces of cracks bear pressure with 'Kinematics = linear' only, and 'Kinematics' is 'full'. Use 'linear', or leave the entry out.");
     breaks_in_motion = choice_name("Breaking") == "in motion";
+    breaks_in_motion = choice_name("Breaking") != "at rest";
     if (is_given("Breaking") && !is_static())
       error("Breaking", "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
     if (has_full_kinematics() && solver == ElasticSolver::linear)

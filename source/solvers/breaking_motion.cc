@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/solvers/breaking_motion.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -8,8 +10,9 @@
 
 namespace PeriDeal
 {
-  BreakingMotion::BreakingMotion(ElasticOperator &op)
+  BreakingMotion::BreakingMotion(ElasticOperator &op, const double share)
     : op(op)
+    , share(share)
     , inverse_mass(inverse_capacity(op))
   {
     op.initialize_vector(velocity);
@@ -19,33 +22,58 @@ namespace PeriDeal
 
   void BreakingMotion::choose_step()
   {
-    constexpr double share = 0.9; // of the stable step
-    step                   = share * 2. / std::sqrt(op.spectrum().sharp);
+    step = share * 2. / std::sqrt(op.spectrum().sharp);
     // Bonds shall break at the same step on any number of processes.
     const double unit = std::pow(10., std::floor(std::log10(step)) - 3.);
     step              = std::floor(step / unit) * unit;
   }
 
 
+  double BreakingMotion::kinetic_energy() const
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < inverse_mass.size(); ++i)
+      if (const double v = velocity.local_element(i); v != 0.)
+        sum += 0.5 * v * v / inverse_mass[i];
+    return sum;
+  }
+
+
+  double BreakingMotion::lost() const
+  {
+    return dealii::Utilities::MPI::sum(damped + kinetic_energy(), velocity.get_mpi_communicator());
+  }
+
+
   unsigned int BreakingMotion::run(Vector &u, const double t)
   {
-    constexpr double       damping = 0.01; // rate times step; a wave passes a horizon in two steps
-    constexpr unsigned int wait    = 60;   // steps without a break
-    constexpr double       keep = (2. - damping) / (2. + damping), push = 2. / (2. + damping);
+    constexpr double damping    = 0.011; // rate times stable step: a wave passes a horizon in two
+    constexpr unsigned int wait = 54;    // stable steps without a break
     if (step == 0.)
       choose_step();
-    velocity                 = 0.;
-    unsigned int       n     = 0;
-    const unsigned int n_own = velocity.locally_owned_size();
-    for (unsigned int quiet = 0; quiet < wait; ++n)
+    const double       half = 0.5 * step, slows = 0.5 * damping * share; // rate times half a step
+    const unsigned int n_own   = velocity.locally_owned_size();
+    const unsigned int n_quiet = std::lround(wait / share);
+    velocity                   = 0.;
+    damped                     = 0.;
+    unsigned int n             = 0;
+    op.residual(residual, u, t);
+    for (unsigned int quiet = 0; quiet < n_quiet; ++n)
       {
-        op.residual(residual, u, t);
         for (unsigned int i = 0; i < n_own; ++i)
-          velocity.local_element(i) = keep * velocity.local_element(i) +
-                                      push * step * inverse_mass[i] * residual.local_element(i);
+          velocity.local_element(i) = (1. - slows) * velocity.local_element(i) +
+                                      half * inverse_mass[i] * residual.local_element(i);
         u.add(step, velocity);
         op.distribute(u, t);
+        op.residual(residual, u, t);
+        for (unsigned int i = 0; i < n_own; ++i)
+          velocity.local_element(i) =
+            (velocity.local_element(i) + half * inverse_mass[i] * residual.local_element(i)) /
+            (1. + slows);
+        damped += 4. * slows * kinetic_energy();
         quiet = op.break_bonds(u, t) > 0 ? 0 : quiet + 1;
+        if (quiet == 0)
+          op.residual(residual, u, t);
       }
     return n;
   }

@@ -250,6 +250,7 @@ def oblique():
     shared = {"Output/Fields": "hdf5", "Output/Write at": "0.7", "Time/End time": "0.7"}
     for angle, bound in OBLIQUE:
         run = run_scene("prm/fracture/oblique_crack_growth.prm", {**shared, **tilted(angle)})
+        check(not any("rows of nodes" in note for note in run.summary["notes"]), f"in motion no note tells of rows: {run.summary['notes']}")
         for turn in turned(run, angle):
             table.add(f"at {angle} degrees: angle to its direction", turn, 0, absolute=bound)
     table.show()

@@ -49,6 +49,9 @@ BLOCK = {"Dimension": "3", "Domain/Lower corner": "0, 0, 0", "Domain/Upper corne
 CUT_OFF = {**ELASTIC, "Boundary conditions/Displacement": "bottom: 0, 0", "Boundary conditions/Traction": "right: if(y > 0.6, 1, 0), 0",
            "Cracks/Segments": "-1, 0.52 ; 2, 0.52"}
 MOTION = {**ELASTIC, "Elasticity/Solver": "dynamics"}
+BRITTLE = {**ELASTIC, "Models": "peridynamics", "Material/Fracture energy": "1"}
+SCATTER = {"Material/Weibull modulus": "10", "Material/Strength seed": "1"}
+FOLLOWING = {"Models": "coupled", "Coupling/Zone": "follow"}
 
 
 def write(folder, name, text):
@@ -184,6 +187,19 @@ def scene_mistakes(folder):
         ("fracture of finite elements", {**ELASTIC, "Models": "finite elements", "Material/Fracture energy": "1"},
          ["'Fracture energy'", "finite elements do not break", "'peridynamics'"]),
         ("fracture of the coupled model", {**ELASTIC, "Models": "coupled", "Material/Critical stretch": "0.1"}, ["'Zone'", "is empty", "'follow'"]),
+        ("scatter without a seed", {**BRITTLE, "Material/Weibull modulus": "10"}, ["'Strength seed' in section 'Material'", "is empty", "'Weibull modulus'"]),
+        ("seed without a scatter", {**BRITTLE, "Material/Strength seed": "1"}, ["'Strength seed' in section 'Material'", "no effect", "'Weibull modulus'"]),
+        *[("scatter of modulus " + modulus, {**BRITTLE, **SCATTER, "Material/Weibull modulus": modulus}, ["'Weibull modulus' in section 'Material'", modulus, "greater than 0"])
+          for modulus in ("0", "-3")],
+        ("scatter of unbreakable bonds", {**ELASTIC, **SCATTER}, ["'Weibull modulus'", "bonds that break", "'Fracture energy'", "'Critical stretch'"]),
+        ("scatter of the coupled model", {**BRITTLE, **SCATTER, **FOLLOWING}, ["'Weibull modulus'", "'Models = peridynamics'", "not 'coupled'"]),
+        ("seed that is no whole number", {**BRITTLE, **SCATTER, "Material/Strength seed": "-1"}, ["'Strength seed' in section 'Material'", "-1"]),
+        ("breaking of a body in motion", {**MOTION, "Models": "peridynamics", "Material/Fracture energy": "1", "Elasticity/Breaking": "at rest"},
+         ["'Breaking' in section 'Elasticity'", "bodies at rest", "'dynamics'"]),
+        ("breaking in motion of the coupled model", {**BRITTLE, **FOLLOWING, "Elasticity/Breaking": "in motion"},
+         ["'Breaking' in section 'Elasticity'", "'in motion'", "'peridynamics'", "'coupled'", "'at rest'"]),
+        ("breaking of unbreakable bonds", {**ELASTIC, "Elasticity/Breaking": "at rest"}, ["'Breaking' in section 'Elasticity'", "bonds that break", "'Fracture energy'"]),
+        ("unknown way of breaking", {**BRITTLE, "Elasticity/Breaking": "in moton"}, ["'Breaking' in section 'Elasticity'", "'in moton'", "'in motion'", "'at rest'"]),
         ("half a velocity", {**MOTION, "Initial and source/Initial velocity": "1"}, ["'Initial velocity'", "needs 2 components"]),
         ("initial displacement that depends on t", {**MOTION, "Initial and source/Initial displacement": "t, 0"},
          ["'Initial displacement'", "depends on t"]),

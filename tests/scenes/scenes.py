@@ -33,6 +33,8 @@ COARSER = {
     "fracture/centre_crack.prm": {"Domain/Cells": "30, 60"},
     "fracture/cracked_block.prm": {"Domain/Cells": "16, 32, 2"},
     "fracture/double_cantilever.prm": {"Domain/Cells": "60, 12"},
+    "fracture/oblique_crack_growth.prm": {"Domain/Cells": "30, 30"},
+    "fracture/scattered_strength.prm": {"Domain/Cells": "24, 24"},
     "papers/bobaru_2012/example_4_paper.prm": {"Domain/Cells": "60, 60"},
     "papers/bobaru_2012/example_5.prm": {"Domain/Cells": "60, 60"},
     "papers/bobaru_2012/example_5_paper.prm": {"Domain/Cells": "30, 30", "Time/End time": "1", "Output/Write at": ""},  # to its end: papers.py growing
