@@ -199,7 +199,7 @@ def scene_mistakes(folder):
         ("breaking in motion of the coupled model", {**BRITTLE, **FOLLOWING, "Elasticity/Breaking": "in motion"},
          ["'Breaking' in section 'Elasticity'", "'in motion'", "'peridynamics'", "'coupled'", "'at rest'"]),
         ("breaking of unbreakable bonds", {**ELASTIC, "Elasticity/Breaking": "at rest"}, ["'Breaking' in section 'Elasticity'", "bonds that break", "'Fracture energy'"]),
-        ("unknown way of breaking", {**BRITTLE, "Elasticity/Breaking": "in moton"}, ["'Breaking' in section 'Elasticity'", "'in moton'", "'in motion'", "'at rest'"]),
+        ("unknown way of breaking", {**BRITTLE, "Elasticity/Breaking": "in moton"}, ["'Breaking' in section 'Elasticity'", "'in moton'", "at rest", "'in motion'"]),
         ("half a velocity", {**MOTION, "Initial and source/Initial velocity": "1"}, ["'Initial velocity'", "needs 2 components"]),
         ("initial displacement that depends on t", {**MOTION, "Initial and source/Initial displacement": "t, 0"},
          ["'Initial displacement'", "depends on t"]),

@@ -200,29 +200,27 @@ namespace PeriDeal
     for (const char *name : {"linear", "conjugate gradients"})
       {
         options.breaks_in_motion = !options.breaks_in_motion; // the second time at rest
-        // What bonds release in a motion is wrong by the error of its step: measured 10.5 %.
-        const double  gap = options.breaks_in_motion ? 0.17 : 1e-9;
         const Body<2> body(settings, ModelKind::peridynamics);
         SlowLoading   loading(body.op(), make_static_solver(name, body.op(), options), options);
         Vector        u;
         loading.begin(u, 0.);
-        double most = 0., last = 0., worst = 0.;
+        double most = 0., last = 0.;
         for (unsigned int k = 1; k <= 32; ++k)
           {
             loading.step(u, k * 3.14159265358979 / 32.);
             const LoadingEnergy energy = loading.energy(u);
             EXPECT_NEAR(energy.imbalance(), 0., 1e-10 * (energy.work + 1e-6));
             EXPECT_GE(energy.dissipated, last * (1. - 1e-12));
-            EXPECT_GE(energy.dissipated, body.op().released_energy() * (1. - gap));
+            // A motion takes more than bonds release: by damping, and what moves at its end. That
+            // is more than the error of its steps.
+            EXPECT_GE(energy.dissipated, body.op().released_energy() * (1. - 1e-9));
             last = energy.dissipated;
-            if(last>0) worst = std::max(worst, body.op().released_energy()/last-1.);
             most = std::max(most, energy.strain);
             Vector r;
             body.op().initialize_vector(r);
             body.op().residual(r, u, k * 3.14159265358979 / 32.);
             EXPECT_LT(r.linfty_norm(), 1e-10);
           }
-        std::cout << name << " worst " << worst << std::endl;
         EXPECT_GT(body.op().n_broken_bonds(), 50u);
         EXPECT_NEAR(loading.energy(u).strain, 0., 1e-10 * most);
       }
@@ -264,8 +262,11 @@ namespace PeriDeal
         // Supports are at rest, and there are no loads.
         const double released = op.released_energy();
         gaps.push_back(std::abs(strain - op.energy(u) - released - motion.lost()) / released);
-        std::cout << share << ' ' << gaps.back() << ' ' << op.n_broken_bonds() << ' ' << released << ' ' << motion.lost() << std::endl;
       }
+    // Measured: 0.026, 0.0095, 0.0030, 0.00077; which bonds break depends a little on the step.
+    EXPECT_LT(gaps[0], 0.04);
+    EXPECT_GT(gaps[1] / gaps[2], 2.5);
+    EXPECT_NEAR(gaps[2] / gaps[3], 4., 1.);
   }
 
 

@@ -203,8 +203,8 @@ namespace PeriDeal
           SCOPED_TRACE(name);
           const unsigned int n_before = 2; // rounds
           options.breaks_in_motion    = moves;
-          const auto time = [](const unsigned int k) { return k * end / n_steps; };
-          const auto make = [&](const Body<2> &body) {
+          const auto time             = [](const unsigned int k) { return k * end / n_steps; };
+          const auto make             = [&](const Body<2> &body) {
             return std::make_unique<SlowLoading>(body.op(),
                                                  make_static_solver(name, body.op(), options),
                                                  options);
