@@ -215,7 +215,7 @@ def ranks():
 
 
 # Angle of the crack to the rows and the bound of what it turns by, degrees.
-OBLIQUE = ((10, 2), (22.5, 3.7))  # measured: 1.2 and 2.3; at 33 degrees 7.1
+OBLIQUE = ((10, 1.8), (22.5, 4.7))  # measured: 1.1 and 3.0; at 33 degrees 7.4; with `Breaking = at rest` 3.5 and 13.4
 
 
 def tilted(angle, half=0.3):

@@ -126,7 +126,6 @@ namespace PeriDeal
         archive.exchange("cracks of", time);
         archive.exchange("cracks of the surrogate", latest.cracks_of);
         archive.exchange("released by growth", this->released_by_growth);
-        archive.exchange("released by joining", this->released_by_joining);
       }
     const auto keep_surrogate = [&]() {
       if (!latest.is_made)
@@ -144,6 +143,7 @@ namespace PeriDeal
         take_loaded(time);
       }
     exchange_contact(archive, keys);
+    archive.exchange("released by joining", this->released_by_joining); // zones follow bonds, too
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
   }

@@ -161,11 +161,7 @@ namespace PeriDeal
       return 0;
     }
 
-    /**
-     * The largest stretch over critical stretch of unbroken bonds at u, which must have been
-     * through distribute(); 0: none is longer than it was, none may break, or it is not known, and
-     * bonds of bodies at rest do not break in a motion then. Collective.
-     */
+    /** Largest stretch over critical stretch of bonds at u, distributed; 0: unknown. Collective. */
     virtual double stretch_over_critical(const Vector & /*u*/)
     {
       return 0.;

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <perideal/bonds/families.h>
+#include <perideal/laws/kernel.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * What a plane through the full family of a lattice cuts, mean over its normals along the axes
+   * n; lengths.
+   */
+  struct CrossingSums
+  {
+    double bonds = 0.; // sum over half the family of omega f V xi_n x^2, over q
+    // h_n times the sum over the layers of nodes on one side of (sum over what crosses of
+    // omega f V x^2, over q)^2
+    double dilatations = 0.;
+  };
+
+  template <int dim>
+  CrossingSums crossing_sums(const Families<dim> &bonds)
+  {
+    const dealii::Tensor<1, dim> &spacing = bonds.nodes().lattice()->spacing;
+    double                        q       = 0.;
+    for (const FamilyMember<dim> &member : bonds.weights().members())
+      q += member.weight * member.r * member.r;
+    CrossingSums sums;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        std::vector<double> shares; // of the layers
+        for (const FamilyMember<dim> &member : bonds.weights().members())
+          {
+            const double share = member.weight * member.r * member.r / q;
+            const int    n     = std::max(0, member.offset[d]);
+            sums.bonds += n * spacing[d] * share / dim;
+            shares.resize(std::max<std::size_t>(shares.size(), n), 0.);
+            for (int layer = 0; layer < n; ++layer)
+              shares[layer] += share;
+          }
+        for (const double share : shares)
+          sums.dilatations += spacing[d] * share * share / dim;
+      }
+    return sums;
+  }
+
+  /** The sum over bonds in a ball: half the mean of |n| over directions, a mean length. */
+  template <int dim>
+  double crossing_of_ball(const Peridynamics &p, const double delta)
+  {
+    constexpr double        mean = dim == 1 ? 1. : dim == 2 ? 2. / dealii::numbers::PI : 0.5;
+    const dealii::QGauss<1> points(20);
+    double                  longer = 0., all = 0.; // moments of omega
+    for (unsigned int q = 0; q < points.size(); ++q)
+      {
+        const double r = points.point(q)[0] * delta;
+        const double omega =
+          points.weight(q) * kernel_shape(p.kernel, r, delta) / std::pow(r, p.kernel_exponent);
+        all += omega * std::pow(r, dim + 1);
+        longer += omega * std::pow(r, dim + 2);
+      }
+    return 0.5 * mean * longer / all;
+  }
+
+  /**
+   * The same for a node's own family, where there is no lattice. Half of what lies on both sides
+   * of the node counts for each side, so that families that end at the surface have no smaller
+   * sums than others.
+   */
+  template <int dim>
+  CrossingSums own_crossing_sums(const Families<dim>                         &bonds,
+                                 const unsigned int                           node,
+                                 std::vector<typename Families<dim>::Member> &family)
+  {
+    bonds.members_of(node, family);
+    std::vector<std::pair<double, double>> crossing(family.size()); // distance, share
+    CrossingSums                           sums;
+    double                                 q = 0.;
+    for (const auto &bond : family)
+      q += bond.weight * bonds.neighbors().bond_vector(node, bond.neighbor).norm_square();
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        for (std::size_t k = 0; k < family.size(); ++k)
+          {
+            const dealii::Tensor<1, dim> xi =
+              bonds.neighbors().bond_vector(node, family[k].neighbor);
+            crossing[k] = {std::abs(xi[d]), 0.5 * family[k].weight * xi.norm_square() / q};
+          }
+        std::sort(crossing.begin(), crossing.end());
+        // What reaches farther than a plane, as the plane moves away from the node.
+        double beyond = 0.5, last = 0.;
+        for (const auto &[distance, share] : crossing)
+          {
+            sums.bonds += distance * share / dim;
+            sums.dilatations += (distance - last) * beyond * beyond / dim;
+            beyond -= share;
+            last = distance;
+          }
+      }
+    return sums;
+  }
+} // namespace PeriDeal
