@@ -206,11 +206,14 @@ def steps():
 
 
 def ranks():
-    """The same on two processes."""
-    alone, two = (run_scene("prm/fracture/centre_crack.prm", COARSE, ranks=n) for n in (1, 2))
-    a, b = (history(run, BROKEN, DISSIPATED, "strain energy") for run in (alone, two))
-    check([row[1] for row in a] == [row[1] for row in b] and a[-1][1] > 50, f"as many bonds break on two processes: {[row[1] for row in b]}")
-    check_close([v for row in b for v in row[2:]], [v for row in a for v in row[2:]], relative=1e-9, what="energies on two processes")
+    """The same on two and four processes, whichever way bonds break."""
+    for way in ("in motion", "at rest"):
+        alone, *others = (run_scene("prm/fracture/centre_crack.prm", {**COARSE, "Elasticity/Breaking": way}, ranks=n) for n in (1, 2, 4))
+        a = history(alone, BROKEN, DISSIPATED, "strain energy")
+        for n, run in zip((2, 4), others):
+            b = history(run, BROKEN, DISSIPATED, "strain energy")
+            check([row[1] for row in a] == [row[1] for row in b] and a[-1][1] > 50, f"{way}: as many bonds break on {n} processes: {[row[1] for row in b]}")
+            check_close([v for row in b for v in row[2:]], [v for row in a for v in row[2:]], relative=1e-9, what=f"{way}: energies on {n} processes")
 
 
 # Angle of the crack to the rows and the bound of what it turns by, degrees.
