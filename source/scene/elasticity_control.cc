@@ -171,7 +171,6 @@ namespace PeriDeal
       error(
         "Contact",
         "found 'true', but faces of cracks bear pressure with 'Kinematics = linear' only, and 'Kinematics' is 'full'. Use 'linear', or leave the entry out.");
-    breaks_in_motion = choice_name("Breaking") == "in motion";
     breaks_in_motion = choice_name("Breaking") != "at rest";
     if (is_given("Breaking") && !is_static())
       error("Breaking", "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");

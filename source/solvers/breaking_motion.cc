@@ -57,6 +57,7 @@ namespace PeriDeal
     velocity                   = 0.;
     damped                     = 0.;
     unsigned int n             = 0;
+    op.update_contact(u);
     op.residual(residual, u, t);
     for (unsigned int quiet = 0; quiet < n_quiet; ++n)
       {
@@ -65,6 +66,7 @@ namespace PeriDeal
                                       half * inverse_mass[i] * residual.local_element(i);
         u.add(step, velocity);
         op.distribute(u, t);
+        op.update_contact(u);
         op.residual(residual, u, t);
         for (unsigned int i = 0; i < n_own; ++i)
           velocity.local_element(i) =
