@@ -11,6 +11,7 @@ import re
 import unittest
 
 import numpy as np
+from PIL import Image
 
 from report_test import ReportCase
 from report_cases import FEM, PD, box_mesh
@@ -394,7 +395,9 @@ class Broken(ReportCase):
                      "The stress intensity factor K_II at crack 1 end 2 in MPa √mm is 0.63 (peridynamics).",
                      "The coupled model differs", "Largest von Mises stress (MPa)", "Strain energy (N mm/mm)"):
             self.assertIn(part, text.replace("At the end the coupled", "The coupled"))
-        self.assertIn("force_over_displacement", {p.stem for p in figures.iterdir()})
+        for figure in ("force_over_displacement", "crack_growth"):
+            self.assertIn(figure, {p.stem for p in figures.iterdir()})
+        self.assertIn("the way from the end of a crack to its tip", text)
         self.assertNotIn("damage_0000", {p.stem for p in figures.iterdir()})  # the start is for films
 
     def test_film(self):
@@ -405,6 +408,11 @@ class Broken(ReportCase):
         self.assertEqual(film.times[film.indices[0]], 0)
         make_elastic(self.directory, times=(0.5, 1.0))
         self.assertEqual(animate.Film(Run(self.directory), PD).field.name, "displacement_magnitude")
+
+    def test_gif(self):
+        make_broken(self.directory)
+        with Image.open(animate.make(self.directory, PD, gif=True) / "film.gif") as film:
+            self.assertEqual((film.format, film.n_frames), ("GIF", len(animate.Film(Run(self.directory), PD).indices)))
 
     def test_coupled_minus_elements(self):
         make_broken(self.directory)

@@ -4,13 +4,13 @@
 """Frames of a 2D run: its field at every written time, with the cracks as they are then.
 
     python3 applications/report/animate.py RUN_DIRECTORY [--model peridynamics] [--field von_mises]
-                                           [--output DIRECTORY]
+                                           [--output DIRECTORY] [--gif]
 
 Elastic bodies are drawn in their deformed shape, magnified by one factor in all frames.
 
-Writes frame_0000.png, frame_0001.png, ... and contact_sheet.png into RUN_DIRECTORY/animation. All
-frames have one colour scale and one size, so that a film can be made of them, for example by
-ffmpeg -framerate 8 -i frame_%04d.png film.mp4. How many frames there are is said by Write every
+Writes frame_0000.png, frame_0001.png, ... and contact_sheet.png into RUN_DIRECTORY/animation, with
+--gif film.gif, too, which browsers show. All frames have one colour scale and one size, so that a
+film can be made of them, for example by ffmpeg -framerate 8 -i frame_%04d.png film.mp4. How many frames there are is said by Write every
 or Write at of the scene.
 """
 
@@ -20,6 +20,7 @@ from pathlib import Path
 
 try:
     import numpy as np
+    from PIL import Image  # which matplotlib needs
 
     import contours
     import deformed
@@ -187,7 +188,18 @@ def chosen_field(run, model, name):
     return getattr(run.words, "fields", {}).get(name) or Field(name)
 
 
-def make(directory, model=None, output=None, field=None):
+def write_film(folder, per_second=8):
+    """All frames as one GIF, which begins anew after a rest at the last one."""
+    frames = []
+    for path in sorted(folder.glob("frame_*.png")):
+        with Image.open(path) as frame:
+            frames.append(frame.convert("RGB").convert("P", palette=Image.Palette.ADAPTIVE))
+    each = 1000 // per_second  # milliseconds
+    frames[0].save(folder / "film.gif", save_all=True, append_images=frames[1:], loop=0,
+                   duration=[each] * (len(frames) - 1) + [8 * each])
+
+
+def make(directory, model=None, output=None, field=None, gif=False):
     """Writes all frames and the contact sheet; returns the folder."""
     run = Run(directory)
     if run.dimension != 2:
@@ -201,6 +213,8 @@ def make(directory, model=None, output=None, field=None):
     for number, index in enumerate(film.indices):
         frame_figure(film, index).savefig(folder / f"frame_{number:04d}.png", dpi=DOTS_PER_INCH)
     contact_sheet(film).savefig(folder / "contact_sheet.png", dpi=DOTS_PER_INCH)
+    if gif:
+        write_film(folder)
     return folder
 
 
@@ -212,9 +226,10 @@ def main(arguments=None):
     parser.add_argument("--field", metavar="NAME", help="a scalar field of the files, for example von_mises; "
                         "else the damage where bonds break, and the solution")
     parser.add_argument("--output", metavar="DIRECTORY")
+    parser.add_argument("--gif", action="store_true", help="write film.gif, too")
     options = parser.parse_args(arguments)
     try:
-        print(make(options.directory, options.model, options.output, options.field))
+        print(make(options.directory, options.model, options.output, options.field, options.gif))
     except (ReportError, OSError) as fault:
         print(f"animate: {fault}".replace("\n", " "), file=sys.stderr)
         return 1

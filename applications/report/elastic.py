@@ -6,6 +6,7 @@
 import numpy as np
 
 import contours
+import crack_curves
 import curves
 import deformed
 import difference
@@ -237,6 +238,9 @@ class ElasticSections:
             listed = " and of ".join(f"{f.side} in {f.axis}" for f in drawn)
             self.page.figure(figure, "force_over_displacement", "The force over the mean displacement "
                              f"of its side, of {listed}.", True)
+        figure = crack_curves.figure(self.run, self.words)
+        if figure is not None:
+            self.page.figure(figure, "crack_growth", crack_curves.caption(self.run), True)
         figure = loading.energy_figure(self.run, self.words)
         if figure is not None:
             self.page.figure(figure, "energies", loading.energy_caption(self.run), True)
@@ -298,7 +302,7 @@ class ElasticSections:
             if loading.is_slow(self.run) or loading.can_break(self.run):
                 if not loading.is_slow(self.run):
                     self.loading_figures()
-                drawn = loading.drawn_quantities(self.run)
+                drawn = loading.drawn_quantities(self.run) | crack_curves.drawn_quantities(self.run)
                 totals = {q: v for q, v in totals.items() if q not in drawn}
             energies = {q: v for q, v in totals.items() if "energy" in q}
             others = {q: v for q, v in totals.items() if q not in energies}

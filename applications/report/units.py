@@ -69,8 +69,12 @@ class Units:
 
     def of_elastic_total(self, quantity):
         """... of an elastic body."""
-        if quantity.startswith("displacement of "):
+        if quantity.startswith(("displacement of ", "crack length", "tip x", "tip y", "tip z")):
             return self.length
+        if quantity.startswith("tip speed"):
+            return over(self.length, self.time)
+        if quantity in ("crack area", "damaged volume"):
+            return self.length and self.length + {2: "²", 3: "³"}[2 if quantity == "crack area" else self.dimension]
         if quantity.startswith("stress intensity "):
             return self.intensity
         if quantity.startswith("J-integral "):

@@ -6,8 +6,10 @@
 
 #include <perideal/output/crack_writer.h>
 
+#include <cstdint>
 #include <sstream>
 
+#include "checksum.h"
 #include "exchange_of_first.h"
 
 namespace PeriDeal
@@ -15,12 +17,12 @@ namespace PeriDeal
   namespace
   {
     /** VTK's numbers of kinds of cells: 3 is a line, 7 a polygon. */
-    std::string vtu_of(const CrackCorners &pieces)
+    std::string vtu_of(const NewCracks &cracks)
     {
       std::ostringstream points, connectivity, offsets, types, numbers;
       points.precision(17);
       unsigned int n = 0, number = 0;
-      for (const auto &corners : pieces)
+      for (const auto &corners : cracks.pieces)
         {
           for (const auto &p : corners)
             {
@@ -47,42 +49,54 @@ namespace PeriDeal
       array("type=\"UInt8\" Name=\"types\"", types);
       out << "</Cells>\n<CellData Scalars=\"piece\">\n";
       array("type=\"Int32\" Name=\"piece\"", numbers);
+      for (const auto &[of, values] : cracks.numbers)
+        {
+          std::ostringstream list;
+          list.precision(17);
+          for (const double value : values)
+            list << value << ' ';
+          array("type=\"Float64\" Name=\"" + of + "\"", list);
+        }
       out << "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
       return out.str();
     }
   } // namespace
 
 
-  CrackWriter::CrackWriter(ResultFolder &folder)
+  CrackWriter::CrackWriter(ResultFolder &folder, const std::string &name)
     : folder(folder)
+    , name(name)
   {}
 
 
-  void CrackWriter::write(const CrackCorners &pieces, const double time)
+  void CrackWriter::write(const NewCracks &cracks, const double time)
   {
-    if (pieces.empty() || !folder.writes() || folder.failed())
+    if (cracks.pieces.empty() || !folder.writes() || folder.failed())
       return;
-    if (pieces != last)
+    const auto file = [&](const unsigned int number) {
+      return "fields/" + name + "_" + dealii::Utilities::int_to_string(number, 4) + ".vtu";
+    };
+    const std::string   text = vtu_of(cracks);
+    const std::uint64_t sum  = checksum(text.data(), text.size());
+    if (n_files == 0 || sum != last)
       {
-        last = pieces;
-        folder.write("fields/cracks_" + dealii::Utilities::int_to_string(n_files++, 4) + ".vtu",
-                     vtu_of(pieces));
+        last = sum;
+        folder.write(file(n_files++), text);
       }
-    records.emplace_back(time,
-                         "fields/cracks_" + dealii::Utilities::int_to_string(n_files - 1, 4) +
-                           ".vtu");
+    records.emplace_back(time, file(n_files - 1));
     std::ostringstream pvd;
     dealii::DataOutBase::write_pvd_record(pvd, records);
     if (!folder.failed())
-      folder.write("cracks.pvd", pvd.str());
+      folder.write(name + ".pvd", pvd.str());
   }
 
 
   void CrackWriter::exchange(Archive &archive)
   {
     auto state = nlohmann::ordered_json::array({last, records, n_files});
-    exchange_of_first(archive, "cracks", state, folder.processes());
-    state[0].get_to(last);
+    exchange_of_first(archive, name, state, folder.processes());
+    if (state[0].is_number()) // earlier checkpoints have the pieces themselves
+      state[0].get_to(last);
     state[1].get_to(records);
     state[2].get_to(n_files);
   }

@@ -57,6 +57,32 @@ namespace PeriDeal
         return *states;
       }
 
+      const Families<dim> *families() const override
+      {
+        return states->brittle() ? &states->bonds().families : nullptr;
+      }
+
+      std::vector<BondBreak> breaks() const override
+      {
+        const auto            &layout = *node_set->partitioner();
+        const BondState       &state  = states->breaking().broken_state();
+        std::vector<BondBreak> list;
+        std::size_t            n_known = 0;
+        for (const auto &[number, time] : state.marked_since(n_known))
+          {
+            const unsigned int i = states->bonds().rows.node_of(number),
+                               j = states->bonds().rows.neighbor(number);
+            if (state.is_broken(number) && layout.local_to_global(i) < layout.local_to_global(j))
+              list.push_back({i, j, time});
+          }
+        return list;
+      }
+
+      std::vector<double> damage() const override
+      {
+        return states->breaking().damage();
+      }
+
       Point<dim> position(const unsigned int node) const override
       {
         return node_set->position(node);
@@ -123,6 +149,8 @@ namespace PeriDeal
               list.add("critical_stretch", [&](const unsigned int i) {
                 return states->breaking().critical_stretches()[i];
               });
+            const std::vector<double> lost = damage();
+            list.add("damage", [&](const unsigned int i) { return lost[i]; });
           }
         list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
         return list.take();

@@ -85,6 +85,21 @@ namespace PeriDeal
         return *elements;
       }
 
+      const Families<dim> *families() const override
+      {
+        return elements->brittle() ? &elements->bonds().families() : nullptr;
+      }
+
+      std::vector<BondBreak> breaks() const override
+      {
+        return elements->breaks();
+      }
+
+      std::vector<double> damage() const override
+      {
+        return elements->damage();
+      }
+
       Point<dim> position(const unsigned int node) const override
       {
         return elements->position(node);
@@ -153,9 +168,9 @@ namespace PeriDeal
         list.add_stress(stress);
         list.add_strain(strain);
         list.add_temperature(elements->temperature_change(), scene);
-        if (const std::vector<double> damage = elements->damage(); !damage.empty())
+        if (const std::vector<double> lost = damage(); !lost.empty())
           {
-            list.add("damage", [&](const unsigned int i) { return damage[i]; });
+            list.add("damage", [&](const unsigned int i) { return lost[i]; });
             list.add("zone",
                      [&](const unsigned int i) { return elements->bonds().in_zone(i) ? 1. : 0.; });
           }

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "crack_growth.h"
 #include "damage_of_solid.h"
 #include "finite_results.h"
 #include "solid_cost.h"
@@ -32,19 +33,13 @@ namespace PeriDeal
   template <int dim>
   SolidProblem<dim>::SolidProblem(const Scene<dim> &scene)
     : scene(scene)
-    , damage(std::make_unique<DamageOfSolid<dim>>())
+    , cracks(std::make_unique<CrackGrowth<dim>>())
+    , told(std::make_unique<DamageOfSolid<dim>>())
   {}
 
 
   template <int dim>
   SolidProblem<dim>::~SolidProblem() = default;
-
-
-  template <int dim>
-  std::string SolidProblem<dim>::field_name() const
-  {
-    return "displacement";
-  }
 
 
   template <int dim>
@@ -58,13 +53,6 @@ namespace PeriDeal
   const Vector &SolidProblem<dim>::state() const
   {
     return displacement;
-  }
-
-
-  template <int dim>
-  unsigned int SolidProblem<dim>::n_components() const
-  {
-    return dim;
   }
 
 
@@ -270,7 +258,7 @@ namespace PeriDeal
     });
     n_iterations = loading->n_iterations();
     tell_first_break(*this, to, context);
-    damage->tell(*this);
+    told->tell(*this);
   }
 
 
@@ -327,7 +315,7 @@ namespace PeriDeal
       }
     if (archive.loads())
       op().linearize(displacement);
-    damage->exchange(archive, *this);
+    told->exchange(archive, *this);
   }
 
 
@@ -429,7 +417,7 @@ namespace PeriDeal
     with_formulas(this->dofs().get_communicator(), [&] { loading->begin(displacement, 0.); });
     n_iterations = loading->n_iterations();
     tell_first_break(*this, 0., context);
-    damage->tell(*this);
+    told->tell(*this);
   }
 
 
@@ -459,6 +447,14 @@ namespace PeriDeal
   void SolidProblem<dim>::add_totals(const double t, const RunContext &context)
   {
     add_solid_totals(*this, t, context);
+    cracks->add_totals(*this, t, context);
+  }
+
+
+  template <int dim>
+  NewCracks SolidProblem<dim>::new_cracks() const
+  {
+    return cracks->surfaces(*this);
   }
 
 

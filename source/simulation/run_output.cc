@@ -143,6 +143,16 @@ namespace PeriDeal
 
 
   template <int dim>
+  void RunOutput<dim>::make_crack_writers()
+  {
+    cracks = std::make_unique<CrackWriter>(run_files->folder, "cracks");
+    for (const Problem<dim> *const problem : problems)
+      new_cracks.push_back(
+        std::make_unique<CrackWriter>(run_files->folder, "cracks_" + series_of(problem->name())));
+  }
+
+
+  template <int dim>
   void RunOutput<dim>::write_fields(const double t, const std::map<std::string, OutputField> &more)
   {
     if (!scene.output.vtu && !scene.output.hdf5)
@@ -164,9 +174,12 @@ namespace PeriDeal
     if (scene.cracks.change())
       record.fields.back()["cracks"] = corners_of(scene.cracks.pieces(t));
     if (!cracks)
-      cracks = std::make_unique<CrackWriter>(run_files->folder);
-    if (scene.output.vtu)
-      cracks->write(crack_corners(scene.cracks.pieces(t)), t);
+      make_crack_writers();
+    if (!scene.output.vtu)
+      return;
+    cracks->write({crack_corners(scene.cracks.pieces(t)), {}}, t);
+    for (std::size_t k = 0; k < problems.size(); ++k)
+      new_cracks[k]->write(problems[k]->new_cracks(), t);
   }
 
 
@@ -212,9 +225,11 @@ namespace PeriDeal
     bool has_cracks = cracks != nullptr;
     archive.exchange("has cracks", has_cracks);
     if (has_cracks && !cracks)
-      cracks = std::make_unique<CrackWriter>(run_files->folder);
+      make_crack_writers();
     if (has_cracks)
       cracks->exchange(archive);
+    for (const auto &writer : new_cracks)
+      writer->exchange(archive);
     run_files->folder.check();
   }
 

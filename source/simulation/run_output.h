@@ -83,6 +83,7 @@ namespace PeriDeal
     void write(PointOutput &output, const double t, const ExactSolution *exact);
     void make_table(PointOutput &output, const bool goes_on);
     void make_writer();
+    void make_crack_writers();
 
     const Scene<dim>                              &scene;
     ResultRecord                                  &record;
@@ -90,6 +91,7 @@ namespace PeriDeal
     Problems                                       problems;
     std::vector<PointOutput>                       outputs;
     std::vector<std::unique_ptr<FieldWriter<dim>>> writers;
-    std::unique_ptr<CrackWriter>                   cracks;
+    std::unique_ptr<CrackWriter>                   cracks;     // of the scene
+    std::vector<std::unique_ptr<CrackWriter>>      new_cracks; // that problems have found
   };
 } // namespace PeriDeal

@@ -113,14 +113,15 @@ namespace
       , summary(folder, {{"title", "a"}}, mode == RunMode::resume)
       , totals(folder, "totals.csv", "time,value", mode == RunMode::resume)
       , probes(folder, "probes.csv", {{0.5}}, 1, {"value"}, mode == RunMode::resume)
-      , cracks(folder)
+      , cracks(folder, "cracks")
     {}
 
     void write(const double t)
     {
       totals.add(std::to_string(t) + "," + full_precision(1. / (3. + t)) + "\n");
       probes.add(t, "coupled", {std::sqrt(t)});
-      cracks.write({{{{0., 0., 0.}}, {{std::floor(t / 2.), 1. / 3., 0.}}}}, t);
+      const CrackCorners line{{{{0., 0., 0.}}, {{std::floor(t / 2.), 1. / 3., 0.}}}};
+      cracks.write({line, {}}, t);
       summary.update({{"time", t}}, "until " + std::to_string(t));
       folder.check();
       folder.commit();

@@ -13,6 +13,7 @@
 #include <perideal/base/timing.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/operators/interface/operator.h>
+#include <perideal/output/crack_writer.h>
 #include <perideal/output/field_writer.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -216,6 +217,12 @@ namespace PeriDeal
 
     /** All fields of files at a time, with current ghosts; the state has current ghosts. */
     virtual std::vector<OutputField> fields(const double t) const = 0;
+
+    /** The surfaces of cracks that the problem has found itself, on all processes, for files. */
+    virtual NewCracks new_cracks() const
+    {
+      return {};
+    }
 
     /** Which cells of the mesh fields show; all if empty. */
     virtual typename FieldWriter<dim>::Choice shown() const

@@ -6,6 +6,8 @@
 #include <perideal/analysis/elastic_stress.h>
 #include <perideal/analysis/phase_statistics.h>
 #include <perideal/analysis/stress_intensity.h>
+#include <perideal/bonds/bond_break.h>
+#include <perideal/bonds/families.h>
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/problems/model.h>
 #include <perideal/problems/motion_parts.h>
@@ -24,6 +26,8 @@
 namespace PeriDeal
 {
   template <int dim>
+  class CrackGrowth;
+  template <int dim>
   class DamageOfSolid;
   template <int dim>
   class DiffusionProblem;
@@ -39,10 +43,17 @@ namespace PeriDeal
     explicit SolidProblem(const Scene<dim> &scene);
     ~SolidProblem() override;
 
-    std::string              field_name() const override;
-    std::string              steady_name() const override;
-    const Vector            &state() const override;
-    unsigned int             n_components() const override;
+    std::string field_name() const override
+    {
+      return "displacement";
+    }
+
+    std::string   steady_name() const override;
+    const Vector &state() const override;
+    unsigned int  n_components() const override
+    {
+      return dim;
+    }
     std::vector<std::string> columns() const override;
     Difference               error(const ExactSolution &exact, const double t) const override;
     std::vector<double>      exact_row(const ExactSolution      &exact,
@@ -86,6 +97,15 @@ namespace PeriDeal
 
     ElasticOperator &op() const override = 0;
 
+    /** Of the bonds that may break; null: there are none. Not collective. */
+    virtual const Families<dim> *families() const = 0;
+
+    /** What has broken between nodes, by the process that owns a bond's first node. */
+    virtual std::vector<BondBreak> breaks() const = 0;
+
+    /** Of owned nodes, the share of their family that they have lost; empty without families. */
+    virtual std::vector<double> damage() const = 0;
+
     /** The mean stress over the volume of the body: what the body as a whole carries. */
     virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
 
@@ -97,6 +117,9 @@ namespace PeriDeal
 
     /** The stress of each own node or cell, with its phase. */
     virtual std::vector<StressSample> stress_samples() const = 0;
+
+    /** Surfaces of what has broken, for files, on all processes. */
+    NewCracks new_cracks() const override;
 
     const Scene<dim>              &scene;
     DiffusionProblem<dim>         *heat = nullptr; // what computes the temperature, if anything
@@ -125,7 +148,8 @@ namespace PeriDeal
 
     double                              size_of_body = 0.; // of body_size(); 0: not asked for yet
     MotionParts                         moving;
-    std::unique_ptr<DamageOfSolid<dim>> damage; // told to the heat
+    std::unique_ptr<CrackGrowth<dim>>   cracks; // that run through breaking bonds
+    std::unique_ptr<DamageOfSolid<dim>> told;   // of damage, to the heat
   };
 
 

@@ -115,6 +115,12 @@ namespace PeriDeal
       return breaking ? breaking->damage() : std::vector<double>();
     }
 
+    /** ZoneBreaking::breaks(). Not collective. */
+    std::vector<BondBreak> breaks() const
+    {
+      return breaking ? breaking->breaks() : std::vector<BondBreak>();
+    }
+
     ForceBalance forces(const Vector &u, const double t) const override;
     double       energy(const Vector &u) const override;
     void         multiply(Vector &y, const Vector &x) const override;

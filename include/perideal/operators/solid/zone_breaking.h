@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/bonds/bond_break.h>
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/operators/solid/zone_bonds.h>
@@ -96,6 +97,17 @@ namespace PeriDeal
 
     /** As ElasticOperator::broken_since(). Not collective. */
     std::vector<NodePair> broken_since(std::size_t &n_known) const;
+
+    /** All that have broken, each on the process that owns its first node. Not collective. */
+    std::vector<BondBreak> breaks() const
+    {
+      const auto            &layout = *nodes.partitioner();
+      std::vector<BondBreak> list;
+      for (const auto &[pair, time] : broken)
+        if (layout.in_local_range(pair[0]))
+          list.push_back({layout.global_to_local(pair[0]), layout.global_to_local(pair[1]), time});
+      return list;
+    }
 
     std::size_t n_broken_pairs() const
     {

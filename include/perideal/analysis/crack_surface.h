@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <perideal/bonds/bond_break.h>
+#include <perideal/bonds/families.h>
+
+#include <array>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * A face of the cells about the nodes of a lattice (an edge in 2D, a rectangle in 3D), between
+   * two nodes one spacing apart whose bond has broken.
+   */
+  template <int dim>
+  struct CrackFacet
+  {
+    dealii::Point<dim> lower, upper; // opposite corners, which differ but for the normal direction
+    double             time;         // when the bond broke
+    double             damage;       // the larger one of its ends
+
+    unsigned int normal() const;
+
+    /** Two in 2D; four in 3D, in a circle. */
+    std::vector<dealii::Point<dim>> corners() const;
+  };
+
+
+  /**
+   * The surface of what has broken in a body, by its bonds.
+   *
+   * Its area (length in 2D) is the sum over the broken bonds of their shares
+   *   a_ij = V_i V_j g/2 (1/S_i + 1/S_j),  g = omega f x^2,
+   *   S_i  = 1/2 sum over the family of g V_j |xi_n|, mean over the axes n,
+   * omega f the weight of the bond xi of length x: what bonds store at a common stretch goes with
+   * g, and the shares of all bonds that cross a plane along the lattice add up to its area.
+   * Families that end at the surface of the body have smaller sums, and their bonds larger shares.
+   */
+  template <int dim>
+  class CrackSurface
+  {
+  public:
+    /** The families have to outlive this object. Collective. */
+    explicit CrackSurface(const Families<dim> &families);
+
+    /** The same to the last bit on any number of processes and in any order. Collective. */
+    double area(const std::vector<BondBreak> &breaks) const;
+
+    /**
+     * Volume of the nodes with a broken bond whose damage is above a threshold, the same as above.
+     * Collective.
+     * @param damage of owned nodes
+     */
+    double damaged_volume(const std::vector<BondBreak> &breaks,
+                          const std::vector<double>    &damage,
+                          const double                  threshold) const;
+
+    /**
+     * Of all processes, in the order of their lower corners; none without a lattice or with cracks
+     * that are cut into the mesh. Collective.
+     */
+    std::vector<CrackFacet<dim>> facets(const std::vector<BondBreak> &breaks,
+                                        const std::vector<double>    &damage) const;
+
+  private:
+    /** A sum over all processes of what lies between 0 and a common scale, without round-off. */
+    double exact_sum(const std::vector<double> &shares, const double scale) const;
+
+    const Families<dim> &families;
+    Vector               sums; // S, with ghosts
+  };
+} // namespace PeriDeal

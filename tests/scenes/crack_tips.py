@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Cracks that run through breaking bonds: their length and area, the places and speeds of their tips, their surface in files.
+
+    crack_tips.py rest | motion | space | ranks | resume
+
+Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
+"""
+
+import glob
+import math
+import os
+import re
+import sys
+
+from fracture import BROKEN, DISSIPATED, ENERGY, PD, history
+from resume import check_stopped, new_folder, tables_of
+from resume import run as run_in_folder
+from scene_test import Comparison, check, check_close, check_less, finish, run_scene
+
+LENGTH, TIP = "crack length", "crack 1 end 2"
+OF_TIP = [f"{what} at {TIP}" for what in ("tip x", "tip y", LENGTH)]
+QUIET = {"Output/Fields": "none", "Output/Write at": ""}
+CANTILEVER = {"Domain/Cells": "100, 20", "Time/Time step": "0.02", "Solver/Tolerance": "1e-8"}
+BRANCHING = {"Domain/Cells": "100, 40", "Time/Time step": "1.2e-7", "Output/Write every": "2e-6", "Output/Fields": "none"}
+
+
+def facets_of(run, series):
+    """[(corners, numbers)] of the last file of a series: corners in the order of the polygon."""
+    name = sorted(glob.glob(os.path.join(run.folder, "fields", f"cracks_{series}_*.vtu")))[-1]
+    with open(name, encoding="utf-8") as file:
+        text = file.read()
+    arrays = {}
+    for attributes, content in re.findall(r"<DataArray ([^>]*)>(.*?)</DataArray>", text, re.DOTALL):
+        found = re.search(r'Name="(\w+)"', attributes)
+        arrays[found.group(1) if found else "points"] = [float(word) for word in content.split()]
+    points = [tuple(arrays["points"][k:k + 3]) for k in range(0, len(arrays["points"]), 3)]
+    numbers = [int(k) for k in arrays["connectivity"]]
+    ends = [0] + [int(k) for k in arrays["offsets"]]
+    return [([points[k] for k in numbers[a:b]], arrays["damage"][i], arrays["broken_since"][i]) for i, (a, b) in enumerate(zip(ends, ends[1:]))]
+
+
+def crack_rows(run, model=PD):
+    """All rows of totals.csv that tell of new cracks, as texts but for the time."""
+    return [(row["time"], row["quantity"], row["value"]) for row in run.totals
+            if row["model"] == model and (row["quantity"].startswith(("crack ", "tip ")) or row["quantity"] in ("damaged volume", "number of tips"))]
+
+
+def rest():
+    """A double cantilever: length by bonds, way of the tip and its place agree to two cells; dissipation per length is that of the beams."""
+    table = Comparison("Double cantilever, 100 x 20 cells")
+    cell = 0.02
+    for model in (PD, "coupled"):
+        more = {} if model == PD else {"Models": model, "Domain/Cells": "100, 21", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}
+        run = run_scene("prm/fracture/double_cantilever.prm", {**CANTILEVER, "Output/Fields": "vtu", "Output/Write at": "", **more})
+        rows = [row for row in history(run, LENGTH, DISSIPATED) if row[1] > 0] if model == PD else \
+            [row for row in history(run, LENGTH, DISSIPATED, model=model) if row[1] > 0]
+        tip = {q: run.total(q, model) for q in OF_TIP}
+        length = rows[-1][1]
+        table.add_limit(f"{model}: length, at least 20 cells", 20 * cell / length, 1)
+        table.add(f"{model}: tip x, from the end of the given crack", tip[OF_TIP[0]] - 0.5, length, absolute=2 * cell)
+        table.add(f"{model}: way of the tip", tip[OF_TIP[2]], length, absolute=2 * cell)
+        table.add(f"{model}: tip y", tip[OF_TIP[1]], 0, absolute=cell)
+        table.add(f"{model}: number of tips", run.total("number of tips", model), 1, absolute=0)
+        first = next(row for row in rows if row[1] > 5 * cell)
+        per_length = (rows[-1][2] - first[2]) / (rows[-1][1] - first[1])
+        table.add(f"{model}: dissipation per length over the fracture energy", per_length / ENERGY, 1.2, absolute=0.1)
+        facets = facets_of(run, model)
+        ways = sum(math.dist(*corners) for corners, *_ in facets)
+        table.add(f"{model}: length of the facets", ways, length, absolute=3 * cell)
+        check(all(damage > 0 and since <= 1 for _, damage, since in facets), f"{model}: facets have damage and times")
+    table.show()
+
+
+def motion():
+    """A crack that runs and branches: its speed is the slope of the way of its tip, and it has two tips at the end."""
+    table = Comparison("Branching crack, 100 x 40 cells")
+    run = run_scene("prm/fracture/branching_crack.prm", BRANCHING)
+    rows = [row for row in history_of_tip(run) if row[1] > 0]
+    check(len(rows) >= 6, f"rows with a crack: {len(rows)}")
+    gaps = [abs((after[1] - before[1]) / (after[0] - before[0]) / at[2] - 1) for before, at, after in zip(rows[1:], rows[2:], rows[3:]) if at[2] > 0]
+    table.add_limit("speed against the slope of the way between the rows beside, mean gap", sum(gaps) / len(gaps), 0.2)
+    table.add_limit("speed over that of Rayleigh's waves, largest", max(row[2] for row in rows) / 3156, 1)
+    table.add("number of tips at the end", run.total("number of tips", PD), 2, absolute=0)
+    released = run.model(PD)["energy balance"]["released"]
+    table.add("released energy per length over the fracture energy", released / run.total(LENGTH, PD) / 135, 1, absolute=0.1)
+    table.show()
+
+
+def history_of_tip(run):
+    """(time, way, speed) from the first row of the tip on."""
+    found = {}
+    for row in run.totals:
+        if row["quantity"] in (f"{LENGTH} at {TIP}", f"tip speed at {TIP}"):
+            found.setdefault(row["time"], []).append(row["value"])
+    return [(t, *found[t]) for t in sorted(found)]
+
+
+def space():
+    """A block torn through: the new area is what the crack had left of its cross section."""
+    table = Comparison("Block, torn through")
+    run = run_scene("prm/fracture/cracked_block.prm", {"Domain/Cells": "20, 40, 4", "Output/Fields": "vtu", "Output/Write at": "", "Time/Time step": "0.05"})
+    left = (1 - 0.4) * 0.125
+    check_less(abs(run.total("force on top in y", PD)), 1e-6, "force at the end")
+    table.add("area of the new crack over what was left", run.total("crack area", PD) / left, 1, absolute=0.1)
+    facets = facets_of(run, PD)
+    area = sum(math.dist(corners[0], corners[1]) * math.dist(corners[1], corners[2]) for corners, *_ in facets)
+    table.add("area of the facets over what was left", area / left, 1, absolute=0.1)
+    table.show()
+
+
+def ranks():
+    """The same on 1, 2 and 4 processes, to the last digit of the tables but for the round-off of displacements."""
+    for scene, settings in (("prm/fracture/branching_crack.prm", {**BRANCHING, "Domain/Cells": "60, 24", "Time/Time step": "2e-7"}),
+                            ("prm/fracture/centre_crack.prm", {**QUIET, "Domain/Cells": "24, 48", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-12",
+                                                               "Time/Time step": "0.05", "Material/Poisson ratio": "0.2", "Material/Fracture energy": "0.005"})):
+        runs = [crack_rows(run_scene(scene, settings, ranks=n)) for n in (1, 2, 4)]
+        check(len(runs[0]) > 20 and runs[0][-1][2] > 0, f"{scene}: rows {len(runs[0])}")
+        for n, rows in zip((2, 4), runs[1:]):
+            check([row[:2] for row in rows] == [row[:2] for row in runs[0]], f"{scene}: rows on {n} processes")
+            check_close([row[2] for row in rows], [row[2] for row in runs[0]], relative=1e-12, what=f"{scene}: cracks on {n} processes")
+
+
+def resume():
+    """A run that was stopped and goes on tells the same of its cracks."""
+    settings = {**BRANCHING, "Domain/Cells": "60, 24", "Time/Time step": "2e-7", "Output/Fields": "vtu"}
+    whole, stopped = new_folder(), new_folder()
+    scene = "fracture/branching_crack.prm"
+    check(run_in_folder(scene, whole, settings).returncode == 0, scene)
+    check_stopped(run_in_folder(scene, stopped, {**settings, "Checkpoint/Wall time limit": "0.3 s"}), stopped, scene)
+    result = run_in_folder(scene, stopped, settings, ["--resume"])
+    check(result.returncode == 0, f"resumed: {result.stderr[-500:]}")
+    tables = [tables_of(folder)["totals.csv"] for folder in (whole, stopped)]
+    cracks = [[row for row in table if row[2].startswith(("crack ", "tip ", "damaged", "number"))] for table in tables]
+    check(cracks[0] == cracks[1] and len(cracks[0]) > 20, f"rows of cracks of a run that was resumed: {len(cracks[1])} and {len(cracks[0])}")
+    names = [sorted(os.path.relpath(name, folder) for name in glob.glob(os.path.join(folder, "fields", "cracks_*"))) for folder in (whole, stopped)]
+    check(names[0] == names[1] and len(names[0]) > 3, f"files of cracks: {names[1]}")
+    for name in names[0]:
+        texts = [open(os.path.join(folder, name), encoding="utf-8").read() for folder in (whole, stopped)]
+        check(texts[0] == texts[1], f"{name} differs")
+
+
+def main():
+    parts = {function.__name__: function for function in (rest, motion, space, ranks, resume)}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish()
+
+
+if __name__ == "__main__":
+    main()
