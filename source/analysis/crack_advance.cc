@@ -179,7 +179,7 @@ namespace PeriDeal
           if (graph.ways[k] >= advance.length - same)
             farthest.push_back(k);
           bool is_end = true;
-          graph.for_each_within(k, 2. * reach, [&](const unsigned int l, const double) {
+          graph.for_each_within(k, reach, [&](const unsigned int l, const double) {
             is_end = is_end &&
                      !(graph.fronts[l] == graph.fronts[k] && graph.ways[l] > graph.ways[k] + same);
           });

@@ -44,24 +44,20 @@ namespace PeriDeal
   template <int dim>
   CrackSurface<dim>::CrackSurface(const Families<dim> &families)
     : families(families)
-    , sums(families.nodes().partitioner())
   {
     const Neighbors<dim> &neighbors = families.neighbors();
+    sums.fill(Vector(families.nodes().partitioner()));
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-      {
-        double sum = 0.;
-        neighbors.for_each(i, [&](const unsigned int j, const double weight) {
-          if (!neighbors.is_real(j))
-            return;
-          const Tensor<1, dim> xi     = neighbors.bond_vector(i, j);
-          double               across = 0.;
-          for (unsigned int d = 0; d < dim; ++d)
-            across += std::abs(xi[d]);
-          sum += weight * xi.norm_square() * across * families.nodes().volume(j);
-        });
-        sums.local_element(i) = sum / (2. * dim);
-      }
-    sums.update_ghost_values();
+      neighbors.for_each(i, [&](const unsigned int j, const double weight) {
+        if (!neighbors.is_real(j))
+          return;
+        const Tensor<1, dim> xi = neighbors.bond_vector(i, j);
+        for (unsigned int n = 0; n < dim; ++n)
+          sums[n].local_element(i) +=
+            0.5 * weight * xi.norm_square() * families.nodes().volume(j) * std::abs(xi[n]);
+      });
+    for (Vector &sum : sums)
+      sum.update_ghost_values();
   }
 
 
@@ -78,26 +74,74 @@ namespace PeriDeal
 
 
   template <int dim>
-  double CrackSurface<dim>::area(const std::vector<BondBreak> &breaks) const
+  std::vector<double> CrackSurface<dim>::weights_of(const std::vector<BondBreak> &breaks) const
   {
-    const Nodes<dim>   &nodes = families.nodes();
-    std::vector<double> shares;
-    std::vector<double> weights; // by breaks
-    for (const BondBreak &bond : breaks)
+    std::vector<double> weights;
+    for (const auto &[i, other, time] : breaks)
       {
         double found = 0.;
-        families.neighbors().for_each(bond.node, [&](const unsigned int j, const double weight) {
-          if (j == bond.neighbor)
-            found = weight;
+        families.neighbors().for_each(i, [&, other = other](const unsigned int j, const double w) {
+          if (j == other)
+            found = w;
         });
-        weights.push_back(found);
+        weights.push_back(found * families.neighbors().bond_vector(i, other).norm_square());
       }
+    return weights;
+  }
+
+
+  template <int dim>
+  Vector CrackSurface<dim>::sums_across(const std::vector<BondBreak> &breaks,
+                                        const std::vector<double>    &weights) const
+  {
+    const Nodes<dim>       &nodes = families.nodes();
+    std::array<Vector, dim> normals;
+    normals.fill(Vector(nodes.partitioner()));
+    for (std::size_t k = 0; k < breaks.size(); ++k)
+      {
+        const auto &[i, j, time]  = breaks[k];
+        const Tensor<1, dim> part = weights[k] * families.neighbors().bond_vector(i, j);
+        for (unsigned int n = 0; n < dim; ++n)
+          {
+            normals[n].local_element(i) += nodes.volume(j) * part[n];
+            normals[n].local_element(j) -= nodes.volume(i) * part[n];
+          }
+      }
+    for (Vector &normal : normals)
+      normal.compress(VectorOperation::add);
+    // Where bonds have broken on all sides no direction is known: so small a part, squared, tells
+    // it.
+    constexpr double least = 1e-6;
+    Vector           across(nodes.partitioner());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        double all = 0., sum = 0.;
+        for (unsigned int n = 0; n < dim; ++n)
+          {
+            const double share = std::pow(normals[n].local_element(i), 2) +
+                                 least * std::pow(sums[n].local_element(i), 2);
+            all += share;
+            sum += share * sums[n].local_element(i);
+          }
+        across.local_element(i) = sum / all;
+      }
+    across.update_ghost_values();
+    return across;
+  }
+
+
+  template <int dim>
+  double CrackSurface<dim>::area(const std::vector<BondBreak> &breaks) const
+  {
+    const Nodes<dim>         &nodes   = families.nodes();
+    const std::vector<double> weights = weights_of(breaks);
+    const Vector              across  = sums_across(breaks, weights);
+    std::vector<double>       shares;
     for (std::size_t k = 0; k < breaks.size(); ++k)
       {
         const auto &[i, j, time] = breaks[k];
         shares.push_back(0.5 * weights[k] * nodes.volume(i) * nodes.volume(j) *
-                         families.neighbors().bond_vector(i, j).norm_square() *
-                         (1. / sums.local_element(i) + 1. / sums.local_element(j)));
+                         (1. / across.local_element(i) + 1. / across.local_element(j)));
       }
     return exact_sum(shares, std::pow(nodes.smallest_spacing(), dim - 1));
   }

@@ -13,7 +13,7 @@ import os
 import re
 import sys
 
-from fracture import BROKEN, DISSIPATED, ENERGY, PD, history
+from fracture import DISSIPATED, ENERGY, PD, history
 from resume import check_stopped, new_folder, tables_of
 from resume import run as run_in_folder
 from scene_test import Comparison, check, check_close, check_less, finish, run_scene
@@ -21,7 +21,6 @@ from scene_test import Comparison, check, check_close, check_less, finish, run_s
 LENGTH, TIP = "crack length", "crack 1 end 2"
 OF_TIP = [f"{what} at {TIP}" for what in ("tip x", "tip y", LENGTH)]
 QUIET = {"Output/Fields": "none", "Output/Write at": ""}
-CANTILEVER = {"Domain/Cells": "100, 20", "Time/Time step": "0.02", "Solver/Tolerance": "1e-8"}
 BRANCHING = {"Domain/Cells": "100, 40", "Time/Time step": "1.2e-7", "Output/Write every": "2e-6", "Output/Fields": "none"}
 
 
@@ -47,43 +46,43 @@ def crack_rows(run, model=PD):
 
 
 def rest():
-    """A double cantilever: length by bonds, way of the tip and its place agree to two cells; dissipation per length is that of the beams."""
-    table = Comparison("Double cantilever, 100 x 20 cells")
-    cell = 0.02
-    for model in (PD, "coupled"):
-        more = {} if model == PD else {"Models": model, "Domain/Cells": "100, 21", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}
-        run = run_scene("prm/fracture/double_cantilever.prm", {**CANTILEVER, "Output/Fields": "vtu", "Output/Write at": "", **more})
-        rows = [row for row in history(run, LENGTH, DISSIPATED) if row[1] > 0] if model == PD else \
-            [row for row in history(run, LENGTH, DISSIPATED, model=model) if row[1] > 0]
-        tip = {q: run.total(q, model) for q in OF_TIP}
+    """A double cantilever: length by bonds, way of the tip and its place agree to a cell; dissipation per length is that by the beams."""
+    table = Comparison("Double cantilever")
+    cell = 2 / 150
+    for model, lattice in ((PD, {}), ("coupled", {"Domain/Cells": "150, 31", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"})):
+        run = run_scene("prm/fracture/double_cantilever.prm", {"Models": model, "Output/Fields": "vtu", "Output/Write at": "", **lattice})
+        rows = [row for row in history(run, LENGTH, DISSIPATED, model=model) if row[1] > 0]
+        tip_x, tip_y, way = (run.total(q, model) for q in OF_TIP)
         length = rows[-1][1]
-        table.add_limit(f"{model}: length, at least 20 cells", 20 * cell / length, 1)
-        table.add(f"{model}: tip x, from the end of the given crack", tip[OF_TIP[0]] - 0.5, length, absolute=2 * cell)
-        table.add(f"{model}: way of the tip", tip[OF_TIP[2]], length, absolute=2 * cell)
-        table.add(f"{model}: tip y", tip[OF_TIP[1]], 0, absolute=cell)
+        check(length > 15 * cell, f"{model}: the crack grows: {length}")
+        table.add(f"{model}: tip x, from the end of the given crack", tip_x - 0.5, length, absolute=1.5 * cell)  # measured: 0.7, 0.5 cells
+        table.add(f"{model}: way of the tip", way, length, absolute=1.5 * cell)
+        table.add(f"{model}: tip y", tip_y, 0, absolute=1e-12)
         table.add(f"{model}: number of tips", run.total("number of tips", model), 1, absolute=0)
-        first = next(row for row in rows if row[1] > 5 * cell)
+        first = next(row for row in rows if row[1] > 3 * cell)
         per_length = (rows[-1][2] - first[2]) / (rows[-1][1] - first[1])
-        table.add(f"{model}: dissipation per length over the fracture energy", per_length / ENERGY, 1.2, absolute=0.1)
-        facets = facets_of(run, model)
-        ways = sum(math.dist(*corners) for corners, *_ in facets)
-        table.add(f"{model}: length of the facets", ways, length, absolute=3 * cell)
-        check(all(damage > 0 and since <= 1 for _, damage, since in facets), f"{model}: facets have damage and times")
+        table.add(f"{model}: dissipation per length over the fracture energy", per_length / ENERGY, 1.2, absolute=0.04)  # measured: 1.22, 1.23
+        ahead = [corners for corners, *_ in facets_of(run, model) if max(abs(p[1]) for p in corners) < 1e-12]
+        table.add(f"{model}: length of the pieces between the arms", sum(math.dist(*corners) for corners in ahead), length, absolute=2 * cell)
+        check(all(damage > 0 and since <= 1 for _, damage, since in facets_of(run, model)), f"{model}: pieces have damage and times")
     table.show()
 
 
 def motion():
     """A crack that runs and branches: its speed is the slope of the way of its tip, and it has two tips at the end."""
-    table = Comparison("Branching crack, 100 x 40 cells")
-    run = run_scene("prm/fracture/branching_crack.prm", BRANCHING)
-    rows = [row for row in history_of_tip(run) if row[1] > 0]
-    check(len(rows) >= 6, f"rows with a crack: {len(rows)}")
-    gaps = [abs((after[1] - before[1]) / (after[0] - before[0]) / at[2] - 1) for before, at, after in zip(rows[1:], rows[2:], rows[3:]) if at[2] > 0]
-    table.add_limit("speed against the slope of the way between the rows beside, mean gap", sum(gaps) / len(gaps), 0.2)
-    table.add_limit("speed over that of Rayleigh's waves, largest", max(row[2] for row in rows) / 3156, 1)
-    table.add("number of tips at the end", run.total("number of tips", PD), 2, absolute=0)
+    table = Comparison("Branching crack")
+    run = run_scene("prm/fracture/branching_crack.prm", {"Output/Write every": "1e-6", "Output/Fields": "none"})
+    rows = [row for row in history_of_tip(run) if row[2] > 0]
+    check(len(rows) > 25, f"rows with a speed: {len(rows)}")
+    # The speed is that of the middle of the last four horizons, so that it lags behind.
+    mean = sum(row[2] for row in rows) / len(rows)
+    table.add("mean speed over the slope of the way", mean / ((rows[-1][1] - rows[0][1]) / (rows[-1][0] - rows[0][0])), 1, absolute=0.05)
+    fastest = max(row[2] for row in rows)
+    check(1500 < fastest < 2000, f"the largest speed: {fastest}, 1800 was measured")
+    counts = [row["value"] for row in run.totals if row["quantity"] == "number of tips"]
+    check(counts[0] == 1 and counts[-1] == 2 and counts == sorted(counts), f"numbers of tips: {counts}")
     released = run.model(PD)["energy balance"]["released"]
-    table.add("released energy per length over the fracture energy", released / run.total(LENGTH, PD) / 135, 1, absolute=0.1)
+    table.add("released energy per length over the fracture energy", released / run.total(LENGTH, PD) / 135, 1, absolute=0.2)  # measured: 1.14
     table.show()
 
 
@@ -97,15 +96,19 @@ def history_of_tip(run):
 
 
 def space():
-    """A block torn through: the new area is what the crack had left of its cross section."""
+    """A block torn through from a crack in its side: the new area is what that had left of the cross section."""
     table = Comparison("Block, torn through")
-    run = run_scene("prm/fracture/cracked_block.prm", {"Domain/Cells": "20, 40, 4", "Output/Fields": "vtu", "Output/Write at": "", "Time/Time step": "0.05"})
-    left = (1 - 0.4) * 0.125
-    check_less(abs(run.total("force on top in y", PD)), 1e-6, "force at the end")
-    table.add("area of the new crack over what was left", run.total("crack area", PD) / left, 1, absolute=0.1)
-    facets = facets_of(run, PD)
+    cell, left = 1 / 15, 0.5 * 0.125
+    run = run_scene("prm/fracture/cracked_block.prm", {
+        "Models": "coupled", "Domain/Cells": "15, 31, 3", "Domain/Nodes": "vertices", "Coupling/Zone": "follow", "Output/Fields": "vtu",
+        "Output/Write at": "", "Time/Time step": "0.02", "Cracks/Polygons": "-0.5,0,0 ; 0,0,0 ; 0,0,0.125 ; -0.5,0,0.125"})
+    check_less(abs(run.total("force on top in y", "coupled")), 1e-6, "force at the end")
+    table.add("area of the new crack", run.total("crack area", "coupled"), left, absolute=0.5 * cell * 0.125)  # measured: 0.28 of a row of cells
+    facets = facets_of(run, "coupled")
     area = sum(math.dist(corners[0], corners[1]) * math.dist(corners[1], corners[2]) for corners, *_ in facets)
-    table.add("area of the facets over what was left", area / left, 1, absolute=0.1)
+    table.add("area of its pieces", area, left, absolute=1e-12)
+    for axis, expected in zip("xyz", (0.5, 0, 0.0625)):
+        table.add(f"tip {axis}", run.total(f"tip {axis} at crack 1", "coupled"), expected, absolute=1e-12)
     table.show()
 
 

@@ -41,8 +41,8 @@ namespace PeriDeal
    * between their corners and at the front; a corner belongs to the nearest front along this way.
    * The tip is the farthest one; of several that are equally far (to 0.05 reach) the mean of those
    * that hang together, of separate ones the first in space. Where no other corner of the same
-   * front within 2 reach is farther, that is a tip, too: `n_tips` counts those that hang together
-   * as one.
+   * front within the reach is farther, that is a tip, too: `n_tips` counts those that hang
+   * together as one.
    *
    * The speed is that of a straight line fitted, in the mean over all instants, to the way as a
    * function of time since the crack was 4 reach shorter; 0 before it has grown by one.

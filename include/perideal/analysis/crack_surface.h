@@ -36,10 +36,12 @@ namespace PeriDeal
    *
    * Its area (length in 2D) is the sum over the broken bonds of their shares
    *   a_ij = V_i V_j g/2 (1/S_i + 1/S_j),  g = omega f x^2,
-   *   S_i  = 1/2 sum over the family of g V_j |xi_n|, mean over the axes n,
+   *   S_i  = 1/2 sum over the family of g V_j |xi_n|,
    * omega f the weight of the bond xi of length x: what bonds store at a common stretch goes with
-   * g, and the shares of all bonds that cross a plane along the lattice add up to its area.
-   * Families that end at the surface of the body have smaller sums, and their bonds larger shares.
+   * g. The shares of all bonds that cross a plane along the lattice are its area, where families
+   * end at the surface of the body, too. The mean of S over the axes n has as weights the squares
+   * of the components of the sum over the node's broken bonds of g V_j xi, which is normal to a
+   * straight crack beside it.
    */
   template <int dim>
   class CrackSurface
@@ -48,7 +50,7 @@ namespace PeriDeal
     /** The families have to outlive this object. Collective. */
     explicit CrackSurface(const Families<dim> &families);
 
-    /** The same to the last bit on any number of processes and in any order. Collective. */
+    /** The same on any number of processes and in any order, but for round-off. Collective. */
     double area(const std::vector<BondBreak> &breaks) const;
 
     /**
@@ -71,7 +73,14 @@ namespace PeriDeal
     /** A sum over all processes of what lies between 0 and a common scale, without round-off. */
     double exact_sum(const std::vector<double> &shares, const double scale) const;
 
-    const Families<dim> &families;
-    Vector               sums; // S, with ghosts
+    /** g of each, without the volumes. */
+    std::vector<double> weights_of(const std::vector<BondBreak> &breaks) const;
+
+    /** S of owned nodes and ghosts. Collective. */
+    Vector sums_across(const std::vector<BondBreak> &breaks,
+                       const std::vector<double>    &weights) const;
+
+    const Families<dim>    &families;
+    std::array<Vector, dim> sums; // S of each axis, with ghosts
   };
 } // namespace PeriDeal
