@@ -179,27 +179,28 @@ namespace PeriDeal
     for (unsigned int k = 0; k < 12; ++k)
       for (unsigned int l = 0; l < 8; ++l)
         facets.push_back({{k * h, 0., l * h}, {(k + 1) * h, 0., (l + 1) * h}, 1. * k, 0.4});
-    const std::vector<CrackFront<3>> fronts{{"crack 1", {{{0., 0., 0.}, {0., 0., 8 * h}}}}};
+    const Point<3>                   begin(0., 0., 0.), end(0., 0., 8 * h), tip(12 * h, 0., 4 * h);
+    const std::vector<CrackFront<3>> fronts{{"crack 1", {{begin, end}}}};
     const auto                       found = find_advances(facets, fronts, reach, 12.);
     EXPECT_NEAR(found[0].length, 12 * h, 1e-12);
-    EXPECT_NEAR(found[0].tip.distance({12 * h, 0., 4 * h}), 0., 1e-12);
+    EXPECT_NEAR(found[0].tip.distance(tip), 0., 1e-12);
   }
 
 
   TEST(CrackSurface, a_torn_body_has_its_cross_section_on_any_number_of_processes)
   {
-    const auto found = tear<2>(torn<2>("16, 48")),
-               alone = tear<2>(torn<2>("16, 48"), MPI_COMM_SELF);
-    EXPECT_NEAR(found.area, 0.75, 1e-6);
+    const auto found = tear<2>(torn<2>("24, 18")),
+               alone = tear<2>(torn<2>("24, 18"), MPI_COMM_SELF);
+    EXPECT_NEAR(found.area, 0.75, 0.15 * 0.75 / 18); // of a cell
     EXPECT_NEAR(found.area, alone.area, 1e-12);
     EXPECT_EQ(found.volume, alone.volume);
-    EXPECT_NEAR(found.volume, 2. / 16 * 0.75, 1e-12); // a column on each side
-    ASSERT_EQ(found.facets.size(), 48u);
-    for (unsigned int k = 0; k < 48; ++k)
+    EXPECT_NEAR(found.volume, 2. / 24 * 0.75, 1e-12); // a column on each side
+    ASSERT_EQ(found.facets.size(), 18u);
+    for (unsigned int k = 0; k < 18; ++k)
       {
         EXPECT_EQ(found.facets[k].lower, alone.facets[k].lower);
         EXPECT_NEAR(found.facets[k].lower[0], 0.5, 1e-14);
-        EXPECT_NEAR(found.facets[k].upper[1] - found.facets[k].lower[1], 0.75 / 48, 1e-14);
+        EXPECT_NEAR(found.facets[k].upper[1] - found.facets[k].lower[1], 0.75 / 18, 1e-14);
         EXPECT_EQ(found.facets[k].damage, alone.facets[k].damage);
         EXPECT_EQ(found.facets[k].time, 2.);
         EXPECT_EQ(found.facets[k].normal(), 0u);
@@ -211,7 +212,7 @@ namespace PeriDeal
   {
     const auto found = tear<3>(torn<3>("8, 9, 6")),
                alone = tear<3>(torn<3>("8, 9, 6"), MPI_COMM_SELF);
-    EXPECT_NEAR(found.area, 0.375, 1e-6);
+    EXPECT_NEAR(found.area, 0.375, 0.015 * 0.375);
     EXPECT_NEAR(found.area, alone.area, 1e-12);
     ASSERT_EQ(found.facets.size(), 54u);
     EXPECT_EQ(found.facets[0].corners().size(), 4u);

@@ -38,10 +38,10 @@ namespace PeriDeal
    *   a_ij = V_i V_j g/2 (1/S_i + 1/S_j),  g = omega f x^2,
    *   S_i  = 1/2 sum over the family of g V_j |xi_n|,
    * omega f the weight of the bond xi of length x: what bonds store at a common stretch goes with
-   * g. The shares of all bonds that cross a plane along the lattice are its area, where families
-   * end at the surface of the body, too. The mean of S over the axes n has as weights the squares
-   * of the components of the sum over the node's broken bonds of g V_j xi, which is normal to a
-   * straight crack beside it.
+   * g. The shares of all bonds that cross a plane along the lattice are its area; where families
+   * end at the surface of the body, to a twentieth of a spacing. The mean of S over the axes n has
+   * as weights the squares of the components of the sum over the node's broken bonds of g V_j xi,
+   * which is normal to a straight crack beside it.
    */
   template <int dim>
   class CrackSurface
