@@ -143,6 +143,16 @@ namespace PeriDeal
                (summary["solver"] == "dynamics" ? "by " : "at ") +
                at_time(model.value("first broken bonds", 0.), summary) + at_place(model);
       });
+      add_of_models(lines, "new cracks", summary, [&](const json &model) {
+        const json found = model.value("new cracks", json::object());
+        for (const std::string measure : {"length", "area"})
+          if (found.value(measure, 0.) > 0.)
+            return measure + " " + rounded_text(found[measure], 4) +
+                   (found.value("number of tips", 0) > 1 ?
+                      ", " + std::to_string(found["number of tips"].get<int>()) + " tips" :
+                      "");
+        return std::string();
+      });
     }
 
 

@@ -149,7 +149,9 @@ namespace PeriDeal
             {{x + h, std::min(y, y + side * h)}, {x + h, std::max(y, y + side * h)}, time, 0.4});
           const auto found = find_advances(facets, at_origin(), reach, time)[0];
           if (k > 10 && side > 0.)
-            EXPECT_EQ(found.n_tips, 2u);
+            {
+              EXPECT_EQ(found.n_tips, 2u);
+            }
         }
     const auto found = find_advances(facets, at_origin(), reach, 40.)[0];
     EXPECT_NEAR(found.tip[0], 40 * h, 1e-12);
