@@ -224,7 +224,7 @@ def loaded_until_it_breaks():
                     {**COARSE, "Models": "finite elements, peridynamics", "Time/Time step": "0.1", "Output/Write at": "0.6",
                      "Boundary conditions/Displacement": "top: 0, 0.012*t; bottom: 0, -0.012*t"})
     rows, text, n_images = report_of(run)
-    check(n_images == 17, f"sketch, 4 displacements, 6 stresses, 2 damages, forces twice, energies and totals are drawn: {n_images}")
+    check(n_images == 18, f"sketch, 4 displacements, 6 stresses, 2 damages, forces twice, energies, the growth of the crack and totals are drawn: {n_images}")
     check("2D, slowly loaded" in text and "slowly loaded up to t = 1 s, was computed" in text, "a slowly loaded body")
     check(bonds_sentence(run, "at") in text, f"the report says: {bonds_sentence(run, 'at')}")
     peaks = {m: max(over_time(run, m, "force on top in y"), key=lambda pair: abs(pair[1])) for m in (FEM, PD)}

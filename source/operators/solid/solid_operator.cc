@@ -127,6 +127,8 @@ namespace PeriDeal
         archive.exchange("cracks of the surrogate", latest.cracks_of);
         archive.exchange("released by growth", this->released_by_growth);
       }
+    if (history.changes_ever() || this->brittle()) // a zone follows cracks, or stretches
+      archive.exchange("released by joining", this->released_by_joining);
     const auto keep_surrogate = [&]() {
       if (!latest.is_made)
         return;
