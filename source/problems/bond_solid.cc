@@ -143,14 +143,12 @@ namespace PeriDeal
         list.add("dilatation", [&](const unsigned int i) { return theta[i]; });
         if (states->brittle() || !scene.cracks.cracks.empty())
           {
-            const std::vector<double> damage = states->breaking().damage();
-            list.add("damage", [&](const unsigned int i) { return damage[i]; });
+            const std::vector<double> lost = damage();
+            list.add("damage", [&](const unsigned int i) { return lost[i]; });
             if (scene.material.scatter)
               list.add("critical_stretch", [&](const unsigned int i) {
                 return states->breaking().critical_stretches()[i];
               });
-            const std::vector<double> lost = damage();
-            list.add("damage", [&](const unsigned int i) { return lost[i]; });
           }
         list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
         return list.take();

@@ -145,7 +145,6 @@ namespace PeriDeal
         take_loaded(time);
       }
     exchange_contact(archive, keys);
-    archive.exchange("released by joining", this->released_by_joining); // zones follow bonds, too
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
   }
