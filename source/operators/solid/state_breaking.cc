@@ -148,7 +148,7 @@ namespace PeriDeal
                                                      const double  share)
   {
     const unsigned long long before = this->n_broken_bonds();
-    const auto change =
+    const auto               change =
       breakage.break_bonds(u, t, share, [&]() { return energy_of(breakage.nodes_at_work(), u); });
     if (!change)
       return 0;
@@ -169,6 +169,7 @@ namespace PeriDeal
     std::vector<std::pair<unsigned int, int>>   crossed;
     solid.families.members_of(node, family);
     const double own = solid.laws.stiffness(node), tiny = 1e-9 * body.horizon();
+    double       all = 0.; // of q, as if there were no crack
     std::size_t  k   = rows.begin_of(node);
     bool         any = false;
     for (const auto &member : family)
@@ -188,10 +189,17 @@ namespace PeriDeal
         if (xi.norm() < tiny) // twins across a crack between doubled nodes
           continue;
         any = any || is_lost;
+        all += member.weight * xi.norm_square();
         list.push_back({j, xi, 0.5 * member.weight * (own + solid.laws.stiffness(j)), is_lost});
       }
     if (!any)
       list.clear();
+    // q may be that of what cracks have left.
+    const double whole =
+      std::min(1.,
+               solid.laws.weighted.local_element(node) * solid.families.nodes().volume(node) / all);
+    for (auto &bond : list)
+      bond.stiffness *= whole;
   }
 
 
