@@ -35,6 +35,12 @@ COARSER = {
     "fracture/double_cantilever.prm": {"Domain/Cells": "60, 12"},
     "fracture/oblique_crack_growth.prm": {"Domain/Cells": "30, 30"},
     "fracture/scattered_strength.prm": {"Domain/Cells": "24, 24"},
+    "fracture/branching_glass.prm": {"Domain/Cells": "200, 80"},
+    "fracture/eccentric_notch.prm": {"Domain/Cells": "101, 32", "Time/Time step": "0.04"},
+    "fracture/half_notched_beam.prm": {"Domain/Cells": "70, 20"},
+    "fracture/kalthoff_winkler_3d.prm": {"Time/End time": "3e-5"},
+    "fracture/quenched_alumina.prm": {"Domain/Cells": "125, 25", "Time/End time": "0.02", "Output/Write at": ""},
+    "fracture/quenched_strip.prm": {"Domain/Cells": "100, 21", "Time/Time step": "2"},
     "papers/bobaru_2012/example_4_paper.prm": {"Domain/Cells": "60, 60"},
     "papers/bobaru_2012/example_5.prm": {"Domain/Cells": "60, 60"},
     "papers/bobaru_2012/example_5_paper.prm": {"Domain/Cells": "30, 30", "Time/End time": "1", "Output/Write at": ""},  # to its end: papers.py growing
