@@ -97,9 +97,9 @@ def save(image, name, width=None, height=None):
 
 
 def picture(figures, scene):
-    """The last figure of the temperature; of an elastic body the deformed shape, of those of papers the stress, of broken ones the damage; of a bar its line."""
+    """The last figure of the temperature, of bodies that break the damage; of an elastic body the deformed shape, of those of papers the stress; of a bar its line."""
     elastic = {"le_2014": "von_mises", "fracture": "damage"}.get(scene.parent.name, "displacement_magnitude")
-    found = sorted(figures.glob("temperature*.png")) or sorted(figures.glob(f"{elastic}*.png")) \
+    found = (elastic != "damage" and sorted(figures.glob("temperature*.png"))) or sorted(figures.glob(f"{elastic}*.png")) \
         or sorted(figures.glob("displacement_magnitude*.png")) or [figures / "line.png"]
     image = cropped(Image.open(found[-1]))
     solid = re.search(r"^\s*set\s+Dimension\s*=\s*3", scene.read_text(encoding="utf-8"), re.MULTILINE)
