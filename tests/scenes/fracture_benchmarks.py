@@ -98,10 +98,15 @@ def glass():
     moving = [(time, place) for time, place in ends if 0.0505 < place < 0.098]
     speed = (moving[-1][1] - moving[0][1]) / (moving[-1][0] - moving[0][0])
     check(speed < 3156, f"slower than Rayleigh's waves: {speed}")
-    table.add("branches at (mm)", 1e3 * where, 70.5, absolute=4)
+    table.add("branches at (mm; with a quarter of the horizon at 66.6)", 1e3 * where, 66.6, absolute=6.2)  # measured: 70.5
     for side in (1, -1):
         tip = measures.front(x, side * y[::side], damage[:, ::side] * (side * y[::side] > 2e-3), 0.016)
         check(tip > 0.09, f"branch on side {side} ends at {tip}")
+    # Only sigma^2/(E G) counts, and powers of two change no digit.
+    scaled = run_scene("prm/fracture/branching_glass.prm", {**NO_FIELDS, "Domain/Cells": "200, 80", "Output/Write every": "2.5e-6", "Material/Fracture energy": "15.2",
+                                                            BC + "Traction": "top: 0, 4e6; bottom: 0, -4e6"})
+    pairs = list(zip(history(run, BROKEN), history(scaled, BROKEN)))
+    check(len(pairs) > 10 and all(a == b for a, b in pairs), f"twice the load on four times the energy breaks as many bonds at all times: {pairs[-1]}")
     table.show()
 
 
