@@ -102,7 +102,10 @@ RUNS = {
     "eccentric": ("eccentric_notch", {
         "zone that follows, m = 3, 64 cells high": {},
         "zone that follows, m = 4, 64 cells high": {"Peridynamics/Horizon ratio": 4}}),
-    "strip": ("quenched_strip", {f"{t} K": pushed(t) for t in (60, 140, 250)}),
+    "strip": ("quenched_strip", {
+        **{f"{t} K": pushed(t) for t in (60, 140, 250)},
+        "250 K, m = 4": {**pushed(250), "Peridynamics/Horizon ratio": 4, "Time/End time": 80},
+        "400 K, m = 4": {**pushed(400), "Peridynamics/Horizon ratio": 4, "Time/End time": 40}}),
 }
 
 
