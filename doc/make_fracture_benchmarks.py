@@ -64,6 +64,7 @@ def pushed(difference):
 
 
 OFTEN = {"Output/Write every": 5e-6}
+AT_REST = {"Elasticity/Breaking": "at rest"}
 RUNS = {
     "quench": ("quenched_alumina", {
         "300 C, as the scene": hot(300),
@@ -71,7 +72,7 @@ RUNS = {
         "300 C, broken bonds conduct": half(300, **{"Elasticity/Broken bonds conduct": 1}),
         "300 C, one energy everywhere": half(300, **{"Material/Fracture energy": "24.3*if(x < 3e-4 || y > 4.7e-3, 10, 1)"}),
         "300 C, m = 4": half(300, **{"Peridynamics/Horizon ratio": 4}),
-        "300 C, peridynamics": half(300, **{"Models": "peridynamics", "Domain/Nodes": "cell centers"}),
+        "300 C, peridynamics": half(300, **{"Models": "peridynamics", "Domain/Nodes": "cell centers", **AT_REST}),
         **{f"{t} C, other digits {k}": half(t, **drawn(k)) for t in (300, 600) for k in (1, 2)}}),
     "impact": ("kalthoff_winkler", {
         "m = 3, delta = 3 mm": OFTEN,
@@ -96,7 +97,7 @@ RUNS = {
         "coupled everywhere, nu = 1/3": pulled(3.8, 2e6, "200, 81", **{**zone("200, 81", 4), "Coupling/Zone": "everywhere", "Material/Poisson ratio": "1/3"}),
         "delta = 2 mm, nu = 1/3": pulled(3.8, 2e6, "200, 80", **{"Material/Poisson ratio": "1/3"})}),
     "beam": ("half_notched_beam", {
-        **{f"m = {m}, {40 if k == 1 else 60} cells high": lattice(f"{140 if k == 1 else 210}, {40 if k == 1 else 60}", m) for k, m in ((1, 4), (1, 5), (1, 6), (2, 4))},
+        **{f"m = {m}, {40 if k == 1 else 60} cells high": lattice(f"{140 if k == 1 else 210}, {40 if k == 1 else 60}", m, **AT_REST) for k, m in ((1, 4), (1, 5), (1, 6), (2, 4))},
         "zone that follows, m = 3, 40 cells high": zone("141, 40", 3),
         "zone that follows, m = 4, 40 cells high": zone("141, 40", 4)}),
     "eccentric": ("eccentric_notch", {
@@ -113,7 +114,7 @@ def computed(program, folder, scene, settings):
     """The result of a scene with settings; computed unless it is there."""
     summary = folder / "summary.json"
     if not summary.exists() or json.loads(summary.read_text(encoding="utf-8")).get("status") != "complete":
-        overrides = {"Output directory": folder, "Output/Fields": "hdf5", **settings}
+        overrides = {"Output directory": folder, "Output/Fields": "hdf5", "Elasticity/Contact": "false", **settings}
         subprocess.run([program, "run", str(SCENES / f"{scene}.prm"), "--overwrite"] + [word for entry, value in overrides.items() for word in ("-s", f"{entry}={value}")],
                        check=True, stdout=subprocess.DEVNULL)
     return measures.Result(str(folder))
