@@ -214,12 +214,13 @@ namespace PeriDeal
           if (first > -some * std::hypot(first, second) || first == 0.)
             continue;
           const bool knows = run.scene.elasticity.contact && run.scene.coupling.exchanges() &&
+                             !run.scene.cracks.on_faces() &&
                              run.name() == to_string(ModelKind::coupled);
           context.record.notes.push_back(
             run.name() + ": K_I at " + end + " is negative: the faces of the crack " +
             (knows ?
                "press on each other there. It is found as if they bore nothing, and is none of an open crack; K_II is that of faces that slide." :
-               "pass through each other, since nothing is between them here. In 'peridynamics' and in 'coupled' with 'Scheme = exchange' they press on each other ('Contact' in section 'Elasticity')."));
+               "pass through each other, since nothing is between them here. In 'peridynamics', and in 'coupled' with 'Scheme = exchange' where 'Mesh' in section 'Cracks' is not 'faces', they press on each other ('Contact' in section 'Elasticity')."));
           return;
         }
     }

@@ -21,12 +21,12 @@ namespace PeriDeal
     declare(
       "Zone",
       EntryType::text,
-      "cracks: 1",
+      "auto",
       "",
       "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; or a formula of "
       "x, y, z, in the zone where it is greater than 0. `adaptive`: as `cracks: 1`, on a mesh that follows the cracks and the solution as the run goes "
       "on (`Coarsening` in section `Domain` says how large its cells may be). `follow`, with elasticity and bonds that break: one horizon around cracks, broken bonds, "
-      "and wherever the body is stretched by more than `Zone share` of the critical stretch; the default there.");
+      "and wherever the body is stretched by more than `Zone share` of the critical stretch. `auto` is that where bonds may break, else `cracks: 1`.");
     declare(
       "Zone share",
       EntryType::number,
@@ -64,7 +64,7 @@ namespace PeriDeal
     certificate        = boolean("Certificate");
     adaptive_tolerance = positive_number("Adaptive tolerance");
     parse_zone();
-    if (bonds_break && exchanges() && !is_given("Zone"))
+    if (bonds_break && exchanges() && text("Zone") == "auto")
       zone = ZoneKind::follow;
     if (is_given("Adaptive tolerance") && !is_adaptive())
       error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + zone_text() + "'.");
@@ -87,7 +87,7 @@ namespace PeriDeal
 
   std::string CouplingControl::zone_text() const
   {
-    return follows_stretches() ? "follow" : text("Zone");
+    return text("Zone") != "auto" ? text("Zone") : follows_stretches() ? "follow" : "cracks: 1";
   }
 
 
@@ -102,7 +102,12 @@ namespace PeriDeal
     const std::string &given = text("Zone");
     const auto         colon = given.find(':');
     const auto         head  = trimmed(given.substr(0, colon));
-    if (given == "everywhere")
+    if (given == "auto")
+      {
+        zone  = ZoneKind::near_cracks;
+        width = 1.;
+      }
+    else if (given == "everywhere")
       zone = ZoneKind::everywhere;
     else if (given == "adaptive")
       zone = ZoneKind::adaptive;
@@ -118,9 +123,10 @@ namespace PeriDeal
       error(
         "Zone",
         "found '" + given +
-          "', needs 'cracks: c' with a number of horizons c, 'everywhere', 'adaptive', 'follow', or a formula of x, y and z.");
+          "', needs 'cracks: c' with a number of horizons c, 'auto', 'everywhere', 'adaptive', 'follow', or a formula of x, y and z.");
     else if (const std::string near =
-               nearest_name(given, std::vector<std::string>{"everywhere", "adaptive", "follow"});
+               nearest_name(given,
+                            std::vector<std::string>{"auto", "everywhere", "adaptive", "follow"});
              !near.empty())
       error("Zone", "found '" + given + "'; did you mean '" + near + "'?");
     else

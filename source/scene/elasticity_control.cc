@@ -63,7 +63,7 @@ namespace PeriDeal
       EntryType::boolean,
       "true",
       "",
-      "Faces of cracks of section `Cracks` and of bonds that have broken press on each other, without friction, where they close "
+      "Faces of cracks of section `Cracks` press on each other, without friction, where they close "
       "(peridynamics, and `coupled` with `Scheme = exchange`, with `Kinematics = linear`). Finite elements alone do not know of it.");
     declare(
       "Solver",
@@ -167,10 +167,6 @@ namespace PeriDeal
     if (is_given("Preconditioner") && solver != ElasticSolver::conjugate_gradients)
       error("Preconditioner",
             "is for 'Solver = conjugate gradients'; 'Solver' is '" + solver_name() + "'.");
-    if (has_full_kinematics() && contact && is_given("Contact"))
-      error(
-        "Contact",
-        "found 'true', but faces of cracks bear pressure with 'Kinematics = linear' only, and 'Kinematics' is 'full'. Use 'linear', or leave the entry out.");
     breaks_in_motion = choice_name("Breaking") != "at rest";
     if (is_given("Breaking") && !is_static())
       error("Breaking", "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");

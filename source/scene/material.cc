@@ -167,6 +167,9 @@ namespace PeriDeal
     refuse(seed && !modulus,
            "Strength seed",
            "has no effect without 'Weibull modulus': give that one, too, or leave the entry out.");
+    refuse(modulus && positive_number("Weibull modulus") < 0.5,
+           "Weibull modulus",
+           "found " + text("Weibull modulus") + ", needs at least 0.5 (real bodies have 2 to 50).");
     if (modulus)
       scatter = Scatter{positive_number("Weibull modulus"), whole_number("Strength seed")};
   }

@@ -67,7 +67,7 @@ namespace PeriDeal
 
       void operator_changed() override
       {
-        outdated = op.has_growing_cracks(); // what only breaks gets no stiffer
+        outdated = true; // where faces touch, stiffer
       }
 
     private:

@@ -68,6 +68,8 @@ namespace PeriDeal
         // Where faces of cracks touch follows from u.
         for (unsigned int round = 0; round == 0 || (op.update_contact(u) && round < most); ++round)
           {
+            if (round > 0)
+              solver->operator_changed();
             iterations += solver->solve(u, t, size);
             op.distribute(u, t); // unknowns that follow from others
           }

@@ -29,6 +29,9 @@ OVERRIDES = {
     "coupling/graded_mesh.prm": {"Domain/Cells": "24, 24"},
     "elasticity/graded_crack.prm": {"Domain/Cells": "40, 40"},
     "fracture/cracked_block.prm": {"Domain/Cells": "16, 32, 2"},  # two layers, or bonds would lie in a plane
+    "fracture/eccentric_notch.prm": {"Domain/Cells": "70, 20"},  # the load is on a part of a side
+    "fracture/kalthoff_winkler_3d.prm": {"Domain/Cells": "13, 27, 2", "Peridynamics/Horizon": "0.016"},
+    "fracture/struck_pieces.prm": {"Time/Time step": "auto"},  # not of a load
     "papers/diyaroglu_2017/example_d.prm": CORNER,
     "papers/diyaroglu_2017/example_d_paper.prm": CORNER,
     # Edges are larger, and so is the hole that cells leave.

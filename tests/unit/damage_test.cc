@@ -359,7 +359,8 @@ namespace PeriDeal
       });
     };
     expect_parts(fault_of(ModelKind::finite_elements, {}), {"Fracture energy", "no effect"});
-    expect_parts(fault_of(ModelKind::coupled, {}), {"'Zone'", "is empty", "'follow'"});
+    expect_parts(fault_of(ModelKind::coupled, {{"Coupling/Zone", "cracks: 1"}}),
+                 {"'Zone'", "is empty", "'follow'"});
     expect_parts(fault_of(ModelKind::coupled, {{"Coupling/Scheme", "blending"}}),
                  {"Fracture energy", "'Scheme'", "do not break"});
     expect_parts(fault_of(ModelKind::peridynamics, {{"Material/Critical stretch", "1"}}),

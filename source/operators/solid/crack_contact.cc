@@ -49,16 +49,22 @@ namespace PeriDeal
   template <int dim>
   bool CrackContact<dim>::make_row(const std::vector<Bond> &bonds, Row &row) const
   {
-    constexpr double about_normal = 0.7, some = 0.1; // cosine; of the sum of lengths
-    Tensor<1, dim>   normal;
-    double           lengths = 0.;
+    constexpr double about_normal = 0.7, some = 0.6; // cosine; of the sum of lengths
+    // Of the bonds that are lost, less the same share of all: families may end at a side.
+    Tensor<1, dim> normal, all;
+    double         lengths = 0., share = 0., sum_of_all = 0.;
     for (const Bond &bond : bonds)
-      if (bond.is_lost)
-        {
-          normal += bond.stiffness / bond.xi.norm_square() * bond.xi;
-          lengths += bond.stiffness / bond.xi.norm();
-        }
-    if (!(normal.norm() > some * lengths)) // nothing is lost, or all around
+      {
+        all += bond.stiffness * bond.xi;
+        sum_of_all += bond.stiffness;
+        if (!bond.is_lost)
+          continue;
+        normal += bond.stiffness * bond.xi;
+        lengths += bond.stiffness * bond.xi.norm();
+        share += bond.stiffness;
+      }
+    normal -= share / sum_of_all * all;
+    if (!(normal.norm() > some * lengths)) // nothing is lost, or in many directions
       return false;
     normal /= normal.norm();
     double face = std::numeric_limits<double>::max(), beyond = 0.;
@@ -276,8 +282,8 @@ namespace PeriDeal
                                      Vector                          &change,
                                      bool                            &changes)
   {
-    const bool touched = any_closed;
-    double     gained  = -energy_of(of_nodes, u.begin());
+    const bool touched = any_closed, any = any_rows;
+    double     gained = -energy_of(of_nodes, u.begin());
     if (touched)
       add_forces_of(of_nodes, -1., change.begin(), u.begin());
     set_rows(of_nodes);
@@ -289,7 +295,7 @@ namespace PeriDeal
     if (any_closed)
       add_forces_of(of_nodes, 1., change.begin(), u.begin());
     changes = changes || touched || any_closed;
-    return any_rows ? -Utilities::MPI::sum(gained, communicator) : 0.;
+    return any || any_rows ? -Utilities::MPI::sum(gained, communicator) : 0.;
   }
 
 

@@ -295,7 +295,7 @@ namespace PeriDeal
     std::vector<Cell> cells;
     search->find(boxes, of_cells, cells);
     changes_forces = true;
-    double gained = add_zone_parts(cells, rows, -1., u);
+    double gained  = add_zone_parts(cells, rows, -1., u);
     make_change();
     gained += add_zone_parts(cells, rows, 1., u);
     stiffness.compress(VectorOperation::add);

@@ -288,12 +288,20 @@ namespace PeriDeal
       return;
     std::vector<Bond> bonds;
     coupled->bonds_of(node, bonds);
-    if (std::none_of(bonds.begin(), bonds.end(), [](const Bond &bond) {
-          return bond.weight == 0. && bond.intact != 0.;
+    const auto cuts = [&](const Bond &bond) {
+      return coupled->families().cracks().cuts(node, bond.neighbor);
+    };
+    if (std::none_of(bonds.begin(), bonds.end(), [&](const Bond &bond) {
+          return bond.weight == 0. && bond.intact != 0. && cuts(bond);
         }))
       return;
     for (const Bond &bond : bonds)
       {
+        if (bond.weight == 0. && !cuts(bond)) // as in peridynamics
+          {
+            list.clear();
+            return;
+          }
         const Tensor<1, dim> xi = nodes().position(bond.neighbor) - nodes().position(node);
         list.push_back(
           {bond.neighbor, xi, 0.5 * bond.intact * xi.norm_square(), bond.weight == 0.});

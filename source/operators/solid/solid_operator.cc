@@ -165,6 +165,8 @@ namespace PeriDeal
         apply_change(change, u == nullptr);
         if (contact)
           contact->set_rows(owned_nodes());
+        if (u)
+          update_contact(*u);
         this->released_by_growth += u ? before - this->energy(*u) : 0.;
       }
     catch (const UserError &fault)

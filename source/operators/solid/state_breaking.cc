@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/laws/elasticity.h>
 #include <perideal/operators/solid/solid_matrices.h>
 #include <perideal/operators/solid/state_operator.h>
 
@@ -178,7 +179,15 @@ namespace PeriDeal
         const Tensor<1, dim> xi = solid.families.neighbors().bond_vector(node, j);
         bool                 is_lost;
         if (k < rows.end_of(node) && rows.neighbor(k) == j) // left out are those cut at first
-          is_lost = !breakage.broken_state().is_whole(k++);
+          {
+            const BondState &state = breakage.broken_state();
+            is_lost                = !state.is_whole(k);
+            if (state.is_broken(k++)) // the normal of what has broken is not known well enough
+              {
+                list.clear();
+                return;
+              }
+          }
         else
           {
             solid.families.cracks().crossed_cracks(node, j, crossed);
@@ -198,8 +207,14 @@ namespace PeriDeal
     const double whole =
       std::min(1.,
                solid.laws.weighted.local_element(node) * solid.families.nodes().volume(node) / all);
+    // Bonds that dilatations take from would be stiffer across a face than the body is.
+    const Moduli moduli = body.material.moduli(position(node));
+    const double stiff  = lambda_of(moduli, dim, body.elasticity.plane) + 2. * moduli.shear,
+                 takes  = solid.laws.volumetric && dim > 1 ?
+                            std::min(1., stiff / (3. * moduli.shear)) :
+                            1.;
     for (auto &bond : list)
-      bond.stiffness *= whole;
+      bond.stiffness *= whole * takes;
   }
 
 

@@ -16,16 +16,15 @@ namespace PeriDeal
 {
   /**
    * Faces of cracks that are pressed together: contact without friction, of the bonds that are
-   * gone. With xi a bond of node i that a crack has cut or that has broken, x its length, e = xi/x
+   * gone. With xi a bond of node i that a crack of the scene has cut, x its length, e = xi/x
    * . (u_j - u_i) - s x its extension (s the mean thermal strain of both ends) and k e^2/2 the half
    * of its energy that it had at i,
    *
    *   g_i = sum_j k_j a_j e_j,   energy  g_i^2/(2 sum_j k_j a_j^2)  where g_i < 0,
    *
-   * a_j = (n . xi/x)^2 (1 + l . xi/x), n along sum_j k_j xi/x^2, which is normal to a plane crack,
-   * and l tangential such that sum_j k_j a_j xi/x has the direction of n: faces that slide along
-   * each other or turn together feel nothing. The bonds that are gone stored more at any u than
-   * these have, so that the body is never stiffer than without the crack.
+   * a_j = (n . xi/x)^2 (1 + l . xi/x), n along the sum of k_j xi over the lost bonds less their
+   * share of that over all, which is normal to a plane crack, and l tangential such that sum_j k_j a_j xi/x has the direction of n: faces that slide along
+   * each other or turn together feel nothing. What is lost stored at least as much at any u.
    *
    * Nodes at which whole bonds go on across the crack, as beside its end, have no contact.
    *
