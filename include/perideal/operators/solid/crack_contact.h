@@ -23,8 +23,9 @@ namespace PeriDeal
    *   g_i = sum_j k_j a_j e_j,   energy  g_i^2/(2 sum_j k_j a_j^2)  where g_i < 0,
    *
    * a_j = (n . xi/x)^2 (1 + l . xi/x), n along the sum of k_j xi over the lost bonds less their
-   * share of that over all, which is normal to a plane crack, and l tangential such that sum_j k_j a_j xi/x has the direction of n: faces that slide along
-   * each other or turn together feel nothing. What is lost stored at least as much at any u.
+   * share of that over all, which is normal to a plane crack, and l tangential such that
+   * sum_j k_j a_j xi/x has the direction of n: faces that slide along each other or turn together
+   * feel nothing. What is lost stored at least as much at any u.
    *
    * Nodes at which whole bonds go on across the crack, as beside its end, have no contact.
    *
