@@ -61,7 +61,7 @@ namespace PeriDeal
     declare(
       "Contact",
       EntryType::boolean,
-      "true",
+      "false",
       "",
       "Faces of cracks of section `Cracks` press on each other, without friction, where they close "
       "(peridynamics, and `coupled` with `Scheme = exchange`, with `Kinematics = linear`). Finite elements alone do not know of it.");

@@ -79,14 +79,14 @@ namespace PeriDeal
           "Relative extension at which a bond breaks, instead of Fracture energy" + formula);
     declare(
       "Weibull modulus",
-      EntryType::number,
+      EntryType::text,
       "",
       "1",
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; "
       "a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.");
     declare(
       "Strength seed",
-      EntryType::whole_number,
+      EntryType::text,
       "",
       "",
       "With Weibull modulus: which of the possible bodies. The same seed gives the same nodes the "
@@ -155,7 +155,7 @@ namespace PeriDeal
   void Material::parse_scatter()
   {
     scatter.reset();
-    const bool modulus = is_given("Weibull modulus"), seed = is_given("Strength seed");
+    const bool modulus = !text("Weibull modulus").empty(), seed = !text("Strength seed").empty();
     refuse(
       modulus && !fracture_energy && !critical_stretch,
       "Weibull modulus",
@@ -167,9 +167,10 @@ namespace PeriDeal
     refuse(seed && !modulus,
            "Strength seed",
            "has no effect without 'Weibull modulus': give that one, too, or leave the entry out.");
-    refuse(modulus && positive_number("Weibull modulus") < 0.5,
+    refuse(modulus && !(parse_number(text("Weibull modulus"), where("Weibull modulus")) >= 0.5),
            "Weibull modulus",
-           "found " + text("Weibull modulus") + ", needs at least 0.5 (real bodies have 2 to 50).");
+           "found " + text("Weibull modulus") +
+             ", needs a number greater than 0, of at least 0.5 (real bodies have 2 to 50).");
     if (modulus)
       scatter = Scatter{positive_number("Weibull modulus"), whole_number("Strength seed")};
   }

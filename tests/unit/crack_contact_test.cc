@@ -22,6 +22,7 @@ namespace
   {
     Settings   settings = box<dim>() + Settings{{"Boundary conditions/Displacement", ""},
                                               {"Elasticity/Solver", "dynamics"},
+                                              {"Elasticity/Contact", "true"},
                                               {"Material/Density", "1"},
                                               {"Material/Poisson ratio", std::to_string(nu)}};
     const auto at = [&](const double x) { return std::to_string(height + slope * (x - 0.5)); };
