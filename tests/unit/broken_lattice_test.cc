@@ -262,6 +262,7 @@ TEST(BrokenLattice, a_warm_strip_with_a_weak_part)
                        {"Domain/Cells=80, 20",
                         "Elasticity/Temperature change=30*x",
                         "Initial and source/Initial value=0",
+                        "Elasticity/Breaking=auto",
                         "Boundary conditions/Dirichlet="});
 }
 
