@@ -170,6 +170,10 @@ namespace PeriDeal
     breaks_in_motion = choice_name("Breaking") != "at rest";
     if (is_given("Breaking") && !is_static())
       error("Breaking", "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
+    if (contact && has_full_kinematics())
+      error(
+        "Contact",
+        "found 'true', which is for 'Kinematics = linear' only; 'Kinematics' is 'full'. Leave one of them out.");
     if (has_full_kinematics() && solver == ElasticSolver::linear)
       error(
         "Kinematics",

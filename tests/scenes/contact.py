@@ -49,7 +49,7 @@ def rest():
     pulled, without = (run_scene(PRESSED, {**pull, **more}) for more in ({}, OPEN))
     for model in MODELS:
         table.add(f"{model}: force of the pulled plate over that without contact", force(pulled, model) / force(without, model), 1, relative=1e-5)  # measured: 5e-6; nodes beside the ends
-    elements = run_scene(PRESSED, {**QUIET, "Models": "finite elements"})
+    elements = run_scene(PRESSED, {**QUIET, **OPEN, "Models": "finite elements"})
     check(any("pass through each other" in note for note in elements.summary["notes"]), "finite elements: a note on faces that pass through each other")
     table.show()
 
@@ -94,6 +94,11 @@ def mistakes():
     """What contact cannot do is said."""
     message = run_scene(PRESSED, {"Elasticity/Contact": "perhaps"}, expect_error=True)
     check_message(message, "Contact", "Elasticity", "perhaps")
+    full = {"Models": "peridynamics", "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients"}
+    for settings, words in ((full, ("'Kinematics'", "'full'")), ({"Models": "finite elements"}, ("no effect", "'coupled'")),
+                            ({"Models": "coupled", "Coupling/Scheme": "blending"}, ("no effect", "'Scheme = exchange'")),
+                            ({"Models": "coupled", "Cracks/Mesh": "faces", "Cracks/Segments": "-0.3,0 ; 0.3,0"}, ("no effect", "'faces'"))):
+        check_message(run_scene(PRESSED, settings, expect_error=True), "'Contact' in section 'Elasticity'", *words)
 
 
 {"rest": rest, "motion": motion, "ranks": ranks, "mistakes": mistakes}[sys.argv[1]]()

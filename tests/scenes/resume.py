@@ -43,7 +43,7 @@ SCENES = {
     "cracks": [("coupling/growing_cracks.prm", {}, 0), ("coupling/growing_cracks.prm", {"Domain/Cells": "24, 24", "Time/Stepper": "bdf2"}, IMPLICIT),
                ("heat/closing_crack.prm", {}, 0),
                ("coupling/adaptive_zone.prm", {"Domain/Cells": "24, 24"}, 0)],
-    "motion": [("fracture/branching_crack.prm", {"Domain/Cells": "60, 24"}, 0),
+    "motion": [("fracture/branching_crack.prm", {"Domain/Cells": "60, 24"}, 0), ("fracture/struck_pieces.prm", {}, 0),
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
                ("fracture/branching_crack.prm", {"Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}, IMPLICIT),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],

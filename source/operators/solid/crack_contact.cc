@@ -9,25 +9,14 @@
 #include <cmath>
 #include <limits>
 
+#include "change_along.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
 
   namespace
   {
-    template <int dim>
-    double change_along(const Tensor<1, dim> &factor,
-                        const double         *u,
-                        const unsigned int    i,
-                        const unsigned int    j)
-    {
-      double sum = 0.;
-      for (unsigned int d = 0; d < dim; ++d)
-        sum += factor[d] * (u[dim * j + d] - u[dim * i + d]);
-      return sum;
-    }
-
-
     /** M^{-1} b; nothing where M is not regular. */
     template <int dim>
     Tensor<1, dim> solved(const Tensor<2, dim> &m, const Tensor<1, dim> &b)
@@ -234,7 +223,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  void CrackContact<dim>::add_forces(Vector &y, const Vector &u, const bool strained) const
+  void CrackContact<dim>::add_forces(Vector       &y,
+                                     const Vector &u,
+                                     const bool    strained,
+                                     const double  multiple) const
   {
     if (!any_closed)
       return;
@@ -243,7 +235,8 @@ namespace PeriDeal
       if (row.touches)
         add_force(node,
                   row,
-                  row.weight * (gap(node, row, u.begin()) + (strained ? 0. : row.strained)),
+                  multiple * row.weight *
+                    (gap(node, row, u.begin()) + (strained ? 0. : row.strained)),
                   y.begin());
     y.compress(VectorOperation::add);
   }

@@ -88,12 +88,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidOperator<dim>::add_contact(Vector &y, const Vector &u, const bool strained) const
+  void SolidOperator<dim>::add_contact(Vector       &y,
+                                       const Vector &u,
+                                       const bool    strained,
+                                       const double  multiple) const
   {
     if (!contact || !contact->touches())
       return;
     const WithGhosts ghosts(u);
-    contact->add_forces(y, u, strained);
+    contact->add_forces(y, u, strained, multiple);
   }
 
 
@@ -162,8 +165,11 @@ namespace PeriDeal
   template void                      SolidOperator<dim>::make_contact();                       \
   template void                      SolidOperator<dim>::set_contact_strains();                \
   template bool                      SolidOperator<dim>::update_contact(const Vector &);       \
-  template void   SolidOperator<dim>::add_contact(Vector &, const Vector &, const bool) const; \
-  template double SolidOperator<dim>::contact_energy(const Vector &) const;                    \
+  template void                      SolidOperator<dim>::add_contact(Vector &,                 \
+                                                const Vector &,           \
+                                                const bool,               \
+                                                const double) const;      \
+  template double                    SolidOperator<dim>::contact_energy(const Vector &) const; \
   template double SolidOperator<dim>::change_contact(const std::vector<unsigned int> &,        \
                                                      const Vector &);                          \
   template void   SolidOperator<dim>::mend_contact(Vector &) const;                            \

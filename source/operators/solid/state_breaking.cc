@@ -137,9 +137,7 @@ namespace PeriDeal
           r.local_element(dim * i + d) = scratch.local_element(dim * i + d) + force[d];
       }
     u.set_ghost_state(false);
-    r *= -1.;
-    this->add_contact(r, u, true);
-    r *= -1.;
+    this->add_contact(r, u, true, -1.);
   }
 
 
@@ -202,7 +200,10 @@ namespace PeriDeal
         list.push_back({j, xi, 0.5 * member.weight * (own + solid.laws.stiffness(j)), is_lost});
       }
     if (!any)
-      list.clear();
+      {
+        list.clear();
+        return;
+      }
     // q may be that of what cracks have left.
     const double whole =
       std::min(1.,

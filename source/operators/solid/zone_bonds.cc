@@ -8,26 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "change_along.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
-
-  namespace
-  {
-    /** xi . (u_j - u_i). */
-    template <int dim>
-    double change_along(const Tensor<1, dim> &xi,
-                        const double         *u,
-                        const unsigned int    i,
-                        const unsigned int    j)
-    {
-      double sum = 0.;
-      for (unsigned int d = 0; d < dim; ++d)
-        sum += xi[d] * (u[dim * j + d] - u[dim * i + d]);
-      return sum;
-    }
-  } // namespace
-
 
   template <int dim>
   ZoneBonds<dim>::ZoneBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds)

@@ -83,10 +83,10 @@ namespace PeriDeal
     bool update(const Vector &u);
 
     /**
-     * Add K u of what touches to a vector of unknowns, with thermal strains minus their load.
-     * Collective.
+     * Add a multiple of K u of what touches to a vector of unknowns, with thermal strains minus
+     * their load. Collective.
      */
-    void add_forces(Vector &y, const Vector &u, const bool strained) const;
+    void add_forces(Vector &y, const Vector &u, const bool strained, const double multiple) const;
 
     /** The energy of all nodes that touch at u, found or not. Collective. */
     double energy(const Vector &u) const;

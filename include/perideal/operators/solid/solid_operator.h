@@ -153,8 +153,11 @@ namespace PeriDeal
     /** Thermal strains have changed. */
     void set_contact_strains();
 
-    /** Add the forces of contact to K u, with thermal strains less their load. Collective. */
-    void add_contact(Vector &y, const Vector &u, const bool strained) const;
+    /** As CrackContact::add_forces(). Collective. */
+    void add_contact(Vector       &y,
+                     const Vector &u,
+                     const bool    strained,
+                     const double  multiple = 1.) const;
 
     /** The energy of contact at u, whose ghosts are brought up to date. Collective. */
     double contact_energy(const Vector &u) const;
