@@ -69,7 +69,7 @@ namespace PeriDeal
                       "is for 'Models = peridynamics', not 'coupled'; leave the entry out.");
       refuse_breaking(scene);
       scene.elasticity.refuse(
-        scene.elasticity.contact && !bonds &&
+        scene.elasticity.contact_is_asked && !bonds &&
           (none || !scene.coupling.exchanges() || scene.cracks.on_faces()),
         "Contact",
         "has no effect: it is for 'Models = peridynamics', and for 'coupled' with 'Scheme = exchange' where 'Mesh' in section 'Cracks' is not 'faces'. Leave it out, or add one of these.");

@@ -60,11 +60,12 @@ namespace PeriDeal
       "With `Temperature change = computed` that changes in time: the part of its heat that a bond still conducts once it has broken, from 0 (nothing) to 1 (as before).");
     declare(
       "Contact",
-      EntryType::boolean,
-      "false",
+      EntryType::choice,
+      "auto",
       "",
-      "Faces of cracks of section `Cracks` press on each other, without friction, where they close "
-      "(peridynamics, and `coupled` with `Scheme = exchange`, with `Kinematics = linear`). Finite elements alone do not know of it.");
+      "Faces of cracks press on each other, without friction, where they close: those of section `Cracks` and those that breaking bonds have left. `auto` does so wherever it can: in "
+      "peridynamics, and in `coupled` with `Scheme = exchange`, with `Kinematics = linear`. Finite elements alone do not know of it.",
+      {"auto", "true", "false"});
     declare(
       "Solver",
       EntryType::choice,
@@ -150,7 +151,8 @@ namespace PeriDeal
       error("Reference temperature",
             "has no effect: 'Temperature change' is '" + text("Temperature change") +
               "'. Use 'Temperature change = computed', or leave the entry out.");
-    contact              = boolean("Contact");
+    contact_is_asked     = choice_name("Contact") == "true";
+    contact              = choice_name("Contact") != "false" && !has_full_kinematics();
     broken_bonds_conduct = number("Broken bonds conduct");
     if (!(broken_bonds_conduct >= 0. && broken_bonds_conduct <= 1.))
       error("Broken bonds conduct",
@@ -170,7 +172,7 @@ namespace PeriDeal
     breaks_in_motion = choice_name("Breaking") != "at rest";
     if (is_given("Breaking") && !is_static())
       error("Breaking", "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
-    if (contact && has_full_kinematics())
+    if (contact_is_asked && has_full_kinematics())
       error(
         "Contact",
         "found 'true', which is for 'Kinematics = linear' only; 'Kinematics' is 'full'. Leave one of them out.");

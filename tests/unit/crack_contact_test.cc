@@ -142,6 +142,32 @@ namespace
   }
 
 
+  /** Of bonds that broke as the part above was torn off, along a wavy line. */
+  void check_broken_faces(const ModelKind model, const double slope)
+  {
+    const auto is_off = [&](const Point<2> &p) {
+      return p[1] > height + slope * (p[0] - 0.5) + 0.02 * std::sin(9. * p[0]);
+    };
+    const Tensor<1, 2> along  = Point<2>(1., slope) / std::hypot(1., slope),
+                       across = Point<2>(-slope, 1.) / std::hypot(1., slope);
+    Settings settings         = parted<2>(0.25);
+    settings.pop_back();
+    settings.push_back({"Material/Critical stretch", "0.01"});
+    if (model == ModelKind::coupled)
+      settings.push_back({"Coupling/Zone", "everywhere"});
+    Body<2>    body(settings, model);
+    const auto displaced = [&](const Tensor<1, 2> &by) {
+      return body.values([&](const Point<2> &p) { return is_off(p) ? by : Tensor<1, 2>(); });
+    };
+    ASSERT_GT(body.op().break_bonds(displaced(0.1 * across), 0.), 0U);
+    const double pressed = forces_at(body, displaced(-1e-3 * across)).l1_norm();
+    EXPECT_GT(pressed, 0.);
+    EXPECT_LT(forces_at(body, displaced(1e-3 * across)).l1_norm(), 1e-2 * pressed);
+    for (const double way : {1e-3, -1e-3})
+      EXPECT_LT(forces_at(body, displaced(way * along)).l1_norm(), 0.2 * pressed);
+  }
+
+
   /** Of a body that is pressed: what goes through the crack over what does without one. */
   template <int dim>
   void check_pressure(const ModelKind model, const double nu)
@@ -201,6 +227,15 @@ TEST(CrackContact, PressureGoesThroughAndTheBodyIsNoStiffer)
       check_pressure<2>(model, 1. / 3.);
       check_pressure<3>(model, 0.25);
     }
+}
+
+
+/** A crack that bonds have left follows rows and leaps from one to another. */
+TEST(CrackContact, FacesOfBrokenBondsPressAndHardlyHold)
+{
+  for (const ModelKind model : {ModelKind::peridynamics, ModelKind::coupled})
+    for (const double slope : {0., 0.12, 0.45})
+      check_broken_faces(model, slope);
 }
 
 

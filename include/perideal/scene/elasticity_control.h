@@ -27,7 +27,8 @@ namespace PeriDeal
     bool          computes_temperature  = false; // by the heat problem of the same scene
     double        reference_temperature = 0.;    // of the unstressed body, where it is computed
     double        broken_bonds_conduct  = 0.;    // of heat: their transmission, 0 to 1
-    bool          contact               = true;  // faces of cracks bear pressure
+    bool          contact               = true;  // faces of cracks bear pressure where they can
+    bool          contact_is_asked      = false; // 'true' is given
     ElasticSolver solver                = ElasticSolver::linear;
     bool          multigrid             = true; // entry `Preconditioner`
     bool          breaks_in_motion      = true; // bonds of bodies at rest, entry `Breaking`
@@ -48,7 +49,7 @@ namespace PeriDeal
 
     /**
      * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there
-     * is none, full kinematics by the linear solver, `Breaking` of a body in motion, a temperature
+     * is none, full kinematics by the linear solver or with `Contact = true`, `Breaking` of a body in motion, a temperature
      * change that depends on t or is computed for a body in motion, and with another physics any
      * entry that is given.
      */

@@ -25,88 +25,128 @@ namespace PeriDeal
       return std::abs(determinant(m)) > tiny * std::pow(m.norm(), dim) ? invert(m) * b :
                                                                          Tensor<1, dim>();
     }
+
+
+    /** l, for lost bonds and a normal. */
+    template <int dim>
+    Tensor<1, dim> lean_of(const std::vector<FacingBond<dim>> &family, const Tensor<1, dim> &normal)
+    {
+      Tensor<2, dim> tangents;
+      Tensor<1, dim> lean;
+      double         sum = 0.;
+      for (const FacingBond<dim> &bond : family)
+        if (const double height = normal * bond.xi; bond.is_lost && height > 0.)
+          {
+            const double         x = bond.xi.norm(), a = bond.stiffness * height * height / (x * x);
+            const Tensor<1, dim> t = (bond.xi - height * normal) / x;
+            sum += a;
+            tangents += a * outer_product(t, t);
+            lean += a * t;
+          }
+      return solved(tangents + sum * outer_product(normal, normal), lean); // that is regular
+    }
   } // namespace
 
 
   template <int dim>
-  CrackContact<dim>::CrackContact(const FamilyOf &family_of, const MPI_Comm communicator)
+  CrackContact<dim>::CrackContact(const FamilyOf &family_of,
+                                  const Layout   &nodes,
+                                  const Layout   &unknowns)
     : family_of(family_of)
-    , communicator(communicator)
+    , nodes(nodes)
+    , unknowns(unknowns)
+    , normals(
+        [this](const unsigned int node, std::vector<Bond> &bonds) { this->family_of(node, bonds); },
+        nodes,
+        unknowns)
   {}
 
 
   template <int dim>
-  bool CrackContact<dim>::make_row(const std::vector<Bond> &bonds, Row &row) const
+  double CrackContact<dim>::share_across(const Tensor<1, dim> &direction,
+                                         const Tensor<1, dim> &normal,
+                                         const Tensor<1, dim> &lean) const
   {
-    constexpr double about_normal = 0.7, some = 0.6; // cosine; of the sum of lengths
-    // Of the bonds that are lost, less the same share of all: families may end at a side.
-    Tensor<1, dim> normal, all;
-    double         lengths = 0., share = 0., sum_of_all = 0.;
-    for (const Bond &bond : bonds)
-      {
-        all += bond.stiffness * bond.xi;
-        sum_of_all += bond.stiffness;
-        if (!bond.is_lost)
-          continue;
-        normal += bond.stiffness * bond.xi;
-        lengths += bond.stiffness * bond.xi.norm();
-        share += bond.stiffness;
-      }
-    normal -= share / sum_of_all * all;
-    if (!(normal.norm() > some * lengths)) // nothing is lost, or in many directions
-      return false;
-    normal /= normal.norm();
-    double face = std::numeric_limits<double>::max(), beyond = 0.;
-    for (const Bond &bond : bonds)
-      if (const double height = normal * bond.xi; height > about_normal * bond.xi.norm())
+    const double own = normal * direction;
+    return own > 0. ? own * own * (1. - lean * direction) : 0.;
+  }
+
+
+  /** Of the family that is looked at. */
+  template <int dim>
+  bool CrackContact<dim>::has_whole_bonds_across(const Tensor<1, dim> &normal) const
+  {
+    constexpr double about_normal = 0.7, some = 0.2; // cosine; of what is lost
+    double           face = std::numeric_limits<double>::max(), lost = 0., whole = 0.;
+    const auto       is_about = [&](const Bond &bond) {
+      return normal * bond.xi > about_normal * bond.xi.norm();
+    };
+    for (const Bond &bond : family)
+      if (bond.is_lost && is_about(bond))
         {
-          if (bond.is_lost)
-            face = std::min(face, height);
-          else
-            beyond = std::max(beyond, height);
+          face = std::min(face, normal * bond.xi);
+          lost += bond.stiffness;
         }
-    if (beyond > (1. - 1e-6) * face)
-      return false;
-    Tensor<2, dim> tangents;
-    Tensor<1, dim> lean;
-    double         sum = 0.;
-    for (const Bond &bond : bonds)
-      if (bond.is_lost)
-        {
-          const Tensor<1, dim> e   = bond.xi / bond.xi.norm();
-          const double         own = std::max(0., normal * e);
-          const Tensor<1, dim> t   = e - (normal * e) * normal;
-          const double         a   = own * own * bond.stiffness;
-          sum += a;
-          tangents += a * outer_product(t, t);
-          lean += a * t;
-        }
-    tangents += sum * outer_product(normal, normal); // so that it is regular
-    const Tensor<1, dim> correction = solved(tangents, lean);
-    double               squares    = 0.;
-    row.ends.clear();
-    for (const Bond &bond : bonds)
-      if (const double own = normal * bond.xi; bond.is_lost && own > 0.)
-        {
-          const double         x = bond.xi.norm();
-          const Tensor<1, dim> t = (bond.xi - own * normal) / x;
-          const double         a = own * own / (x * x) * (1. - correction * t);
-          squares += bond.stiffness * a * a;
-          row.ends.push_back(
-            {bond.neighbor, bond.stiffness * a / x * bond.xi, bond.stiffness * a * x});
-        }
-    row.weight = 1. / squares;
-    return squares > 0.;
+    for (const Bond &bond : family)
+      if (!bond.is_lost && is_about(bond) && normal * bond.xi > (1. - 1e-6) * face)
+        whole += bond.stiffness;
+    return whole > some * lost;
   }
 
 
   template <int dim>
-  void CrackContact<dim>::find_strained(const unsigned int node, Row &row) const
+  typename CrackContact<dim>::Row &CrackContact<dim>::row_of(const unsigned int node)
+  {
+    const auto [place, is_new] = row_numbers.try_emplace(node, rows.size());
+    if (is_new)
+      {
+        rows.emplace_back();
+        rows.back().node = node;
+      }
+    return rows[place->second];
+  }
+
+
+  template <int dim>
+  void CrackContact<dim>::make_row(Row &row)
+  {
+    const unsigned int node  = row.node;
+    const double       scale = family_of(node, family);
+    row.ends.clear();
+    row.weight                   = 0.;
+    const Tensor<1, dim> normal  = normals.normal(node);
+    const bool           presses = normal != Tensor<1, dim>() && !has_whole_bonds_across(normal);
+    const Tensor<1, dim> lean    = presses ? lean_of(family, normal) : Tensor<1, dim>();
+    constexpr double     some    = 0.01;
+    double               squares = 0., all = 0.;
+    for (const Bond &bond : family)
+      if (bond.is_lost)
+        {
+          const double         x = bond.xi.norm();
+          const Tensor<1, dim> d = bond.xi / x;
+          const double         a = presses ? share_across(d, normal, lean) : 0.;
+          squares += bond.stiffness * a * a;
+          all += bond.stiffness * std::pow(std::max(0., normal * d), 4);
+          row.ends.push_back({bond.neighbor, d, bond.stiffness, bond.stiffness * a, x});
+        }
+    if (squares > some * all) // else they lean to one side only
+      row.weight = scale / squares;
+    else
+      row.touches = false;
+    for (unsigned int c = 0; c < dim; ++c)
+      leans.local_element(dim * node + c) = lean[c];
+    find_strained(row);
+  }
+
+
+  template <int dim>
+  void CrackContact<dim>::find_strained(Row &row) const
   {
     row.strained = 0.;
     for (const End &end : row.ends)
       if (strain_at)
-        row.strained += 0.5 * end.length * (strain_at(node) + strain_at(end.neighbor));
+        row.strained +=
+          0.5 * end.factor * end.length * (strain_at(row.node) + strain_at(end.neighbor));
   }
 
 
@@ -114,30 +154,45 @@ namespace PeriDeal
   void CrackContact<dim>::find_any()
   {
     double any[2] = {rows.empty() ? 0. : 1., n_touching() > 0 ? 1. : 0.};
-    Utilities::MPI::max(any, communicator, any);
+    Utilities::MPI::max(any, unknowns->get_mpi_communicator(), any);
     any_rows   = any[0] > 0.;
     any_closed = any[1] > 0.;
   }
 
 
   template <int dim>
-  void CrackContact<dim>::set_rows(const std::vector<unsigned int> &of_nodes)
+  double CrackContact<dim>::set_rows(const std::vector<unsigned int> &of_nodes, const Vector *u)
   {
-    for (const unsigned int i : of_nodes)
+    const std::vector<unsigned int> changed = normals.renew(of_nodes);
+    double                          flag    = changed.empty() ? 0. : 1.;
+    flag = Utilities::MPI::max(flag, unknowns->get_mpi_communicator());
+    if (!any_rows && flag == 0.)
+      return 0.;
+    if (leans.size() == 0)
       {
-        family_of(i, family);
-        Row row;
-        if (family.empty() || !make_row(family, row))
-          {
-            rows.erase(i);
-            continue;
-          }
-        find_strained(i, row);
-        const auto old = rows.find(i);
-        row.touches    = old != rows.end() && old->second.touches;
-        rows[i]        = std::move(row);
+        leans.reinit(unknowns);
+        pressures.reinit(nodes);
       }
+    double     released = 0.;
+    const auto renew    = [&](Row &row) {
+      released += u ? energy_of(row, u->begin()) : 0.;
+      make_row(row);
+      if (u)
+        row.touches = row.weight > 0. && is_closed(row, u->begin());
+      released -= u ? energy_of(row, u->begin()) : 0.;
+    };
+    for (const unsigned int i : of_nodes) // those that are whole again
+      if (const auto found = row_numbers.find(i);
+          found != row_numbers.end() && !std::binary_search(changed.begin(), changed.end(), i))
+        {
+          renew(rows[found->second]);
+          pressures.local_element(i) = 0.;
+        }
+    for (const unsigned int i : changed)
+      renew(row_of(i));
+    leans.update_ghost_values();
     find_any();
+    return released;
   }
 
 
@@ -145,42 +200,40 @@ namespace PeriDeal
   void CrackContact<dim>::set_strains(const std::function<double(const unsigned int)> &at)
   {
     strain_at = at;
-    for (auto &[node, row] : rows)
-      find_strained(node, row);
+    for (Row &row : rows)
+      find_strained(row);
   }
 
 
   template <int dim>
-  double CrackContact<dim>::gap(const unsigned int node, const Row &row, const double *u) const
+  double CrackContact<dim>::gap(const Row &row, const double *u) const
   {
     double sum = -row.strained;
     for (const End &end : row.ends)
-      sum += change_along(end.factor, u, node, end.neighbor);
+      sum += end.factor * change_along(end.direction, u, row.node, end.neighbor);
     return sum;
   }
 
 
   template <int dim>
-  double CrackContact<dim>::size_of_terms(const unsigned int node,
-                                          const Row         &row,
-                                          const double      *u) const
+  double CrackContact<dim>::size_of_terms(const Row &row, const double *u) const
   {
     double size = std::abs(row.strained);
     for (const End &end : row.ends)
       for (unsigned int d = 0; d < dim; ++d)
-        size += std::abs(end.factor[d]) *
-                (std::abs(u[dim * node + d]) + std::abs(u[dim * end.neighbor + d]));
+        size += std::abs(end.factor * end.direction[d]) *
+                (std::abs(u[dim * row.node + d]) + std::abs(u[dim * end.neighbor + d]));
     return size;
   }
 
 
   template <int dim>
-  bool CrackContact<dim>::is_closed(const unsigned int node, const Row &row, const double *u) const
+  bool CrackContact<dim>::is_closed(const Row &row, const double *u) const
   {
     // Of displacements that a solver has found to its tolerance: else nodes would flutter.
     constexpr double noise = 1e-9;
-    const double     now   = gap(node, row, u);
-    if ((now < 0.) == row.touches || std::abs(now) > noise * size_of_terms(node, row, u))
+    const double     now   = gap(row, u);
+    if ((now < 0.) == row.touches || std::abs(now) > noise * size_of_terms(row, u))
       return now < 0.;
     return row.touches;
   }
@@ -192,33 +245,40 @@ namespace PeriDeal
     if (!any_rows)
       return false;
     double flags[] = {0., 0.};
-    for (auto &[node, row] : rows)
+    for (Row &row : rows)
       {
-        const bool touches = is_closed(node, row, u.begin());
+        const bool touches = row.weight > 0. && is_closed(row, u.begin());
         if (touches != row.touches)
           flags[0] = 1.;
         if (touches)
           flags[1] = 1.;
         row.touches = touches;
       }
-    Utilities::MPI::max(flags, communicator, flags);
+    Utilities::MPI::max(flags, unknowns->get_mpi_communicator(), flags);
     any_closed = flags[1] > 0.;
     return flags[0] > 0.;
   }
 
 
+  /** Of K u, from what presses at both ends of the node's lost bonds. */
   template <int dim>
-  void CrackContact<dim>::add_force(const unsigned int node,
-                                    const Row         &row,
-                                    const double       size,
-                                    double            *y) const
+  void CrackContact<dim>::find_force(const Row &row) const
   {
+    row.force        = 0.;
+    const double own = pressures.local_element(row.node);
     for (const End &end : row.ends)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          y[dim * end.neighbor + d] += size * end.factor[d];
-          y[dim * node + d] -= size * end.factor[d];
-        }
+      {
+        double size = own * end.factor;
+        if (const double other = pressures.local_element(end.neighbor); other != 0.)
+          {
+            Tensor<1, dim> lean;
+            for (unsigned int d = 0; d < dim; ++d)
+              lean[d] = leans.local_element(dim * end.neighbor + d);
+            size += other * end.stiffness *
+                    share_across(-1. * end.direction, normals.normal(end.neighbor), lean);
+          }
+        row.force -= size * end.direction;
+      }
   }
 
 
@@ -229,66 +289,35 @@ namespace PeriDeal
                                      const double  multiple) const
   {
     if (!any_closed)
-      return;
-    y.zero_out_ghost_values();
-    for (const auto &[node, row] : rows)
-      if (row.touches)
-        add_force(node,
-                  row,
-                  multiple * row.weight *
-                    (gap(node, row, u.begin()) + (strained ? 0. : row.strained)),
-                  y.begin());
-    y.compress(VectorOperation::add);
+      {
+        for (const Row &row : rows)
+          row.force = 0.;
+        return;
+      }
+    for (const Row &row : rows)
+      pressures.local_element(row.node) =
+        row.touches ? row.weight * (gap(row, u.begin()) + (strained ? 0. : row.strained)) : 0.;
+    pressures.update_ghost_values();
+    for (const Row &row : rows)
+      find_force(row);
+    add_last_forces(y, multiple);
   }
 
 
   template <int dim>
-  void CrackContact<dim>::add_forces_of(const std::vector<unsigned int> &of_nodes,
-                                        const double                     multiple,
-                                        double                          *y,
-                                        const double                    *u) const
+  void CrackContact<dim>::add_last_forces(Vector &y, const double multiple) const
   {
-    for (const unsigned int i : of_nodes)
-      if (const auto found = rows.find(i); found != rows.end() && found->second.touches)
-        add_force(i, found->second, multiple * found->second.weight * gap(i, found->second, u), y);
+    for (const Row &row : rows)
+      for (unsigned int d = 0; d < dim; ++d)
+        y.local_element(dim * row.node + d) += multiple * row.force[d];
   }
 
 
   template <int dim>
-  double CrackContact<dim>::energy_of(const std::vector<unsigned int> &of_nodes,
-                                      const double                    *u) const
+  double CrackContact<dim>::energy_of(const Row &row, const double *u) const
   {
-    double sum = 0.;
-    for (const unsigned int i : of_nodes)
-      if (const auto found = rows.find(i); found != rows.end())
-        {
-          const double now = std::min(0., gap(i, found->second, u));
-          sum += 0.5 * found->second.weight * now * now;
-        }
-    return sum;
-  }
-
-
-  template <int dim>
-  double CrackContact<dim>::set_rows(const std::vector<unsigned int> &of_nodes,
-                                     const Vector                    &u,
-                                     Vector                          &change,
-                                     bool                            &changes)
-  {
-    const bool touched = any_closed, any = any_rows;
-    double     gained = -energy_of(of_nodes, u.begin());
-    if (touched)
-      add_forces_of(of_nodes, -1., change.begin(), u.begin());
-    set_rows(of_nodes);
-    for (const unsigned int i : of_nodes)
-      if (const auto found = rows.find(i); found != rows.end())
-        found->second.touches = is_closed(i, found->second, u.begin());
-    find_any();
-    gained += energy_of(of_nodes, u.begin());
-    if (any_closed)
-      add_forces_of(of_nodes, 1., change.begin(), u.begin());
-    changes = changes || touched || any_closed;
-    return any || any_rows ? -Utilities::MPI::sum(gained, communicator) : 0.;
+    const double now = row.weight > 0. ? std::min(0., gap(row, u)) : 0.;
+    return 0.5 * row.weight * now * now;
   }
 
 
@@ -298,32 +327,27 @@ namespace PeriDeal
     if (!any_rows)
       return 0.;
     double sum = 0.;
-    for (const auto &[node, row] : rows)
-      {
-        const double now = std::min(0., gap(node, row, u.begin()));
-        sum += 0.5 * row.weight * now * now;
-      }
-    return Utilities::MPI::sum(sum, communicator);
+    for (const Row &row : rows)
+      sum += energy_of(row, u.begin());
+    return Utilities::MPI::sum(sum, unknowns->get_mpi_communicator());
   }
 
 
   template <int dim>
   unsigned int CrackContact<dim>::n_touching() const
   {
-    return std::count_if(rows.begin(), rows.end(), [](const auto &row) {
-      return row.second.touches;
-    });
+    return std::count_if(rows.begin(), rows.end(), [](const Row &row) { return row.touches; });
   }
 
 
   template <int dim>
   void CrackContact<dim>::exchange(Archive &archive, Vector nodal, const NodeKeys &keys)
   {
-    for (const auto &[node, row] : rows)
-      nodal.local_element(node) = row.touches ? 1. : 0.;
+    for (const Row &row : rows)
+      nodal.local_element(row.node) = row.touches ? 1. : 0.;
     archive.exchange("touching", nodal, keys);
-    for (auto &[node, row] : rows)
-      row.touches = nodal.local_element(node) > 0.;
+    for (Row &row : rows)
+      row.touches = row.weight > 0. && nodal.local_element(row.node) > 0.;
     find_any();
   }
 
@@ -332,9 +356,10 @@ namespace PeriDeal
   std::size_t CrackContact<dim>::memory_consumption() const
   {
     std::size_t sum = 0;
-    for (const auto &row : rows)
-      sum += sizeof(row) + row.second.ends.capacity() * sizeof(End);
-    return sum;
+    for (const Row &row : rows)
+      sum += sizeof(row) + row.ends.capacity() * sizeof(End);
+    return sum + leans.memory_consumption() + pressures.memory_consumption() +
+           normals.memory_consumption();
   }
 
 

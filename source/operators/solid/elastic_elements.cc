@@ -333,7 +333,8 @@ namespace PeriDeal
     hanging.condense(force_change);
     hanging.set(force_change, 0.);
     r -= force_change;
-    this->mend_contact(r);
+    this->leave_out_contact(r);
+    this->add_contact(r, u, true, -1.);
     force_change   = 0.;
     changes_forces = false;
   }

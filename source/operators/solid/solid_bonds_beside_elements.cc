@@ -280,32 +280,24 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidBondsBesideElements<dim>::contact_family(
-    const unsigned int                             node,
-    std::vector<typename CrackContact<dim>::Bond> &list) const
+  double SolidBondsBesideElements<dim>::contact_family(const unsigned int            node,
+                                                       std::vector<FacingBond<dim>> &list) const
   {
     if (!coupled->symmetric())
-      return;
+      return 0.;
     std::vector<Bond> bonds;
     coupled->bonds_of(node, bonds);
-    const auto cuts = [&](const Bond &bond) {
-      return coupled->families().cracks().cuts(node, bond.neighbor);
-    };
     if (std::none_of(bonds.begin(), bonds.end(), [&](const Bond &bond) {
-          return bond.weight == 0. && bond.intact != 0. && cuts(bond);
+          return bond.weight == 0. && bond.intact != 0.;
         }))
-      return;
+      return 0.;
     for (const Bond &bond : bonds)
       {
-        if (bond.weight == 0. && !cuts(bond)) // as in peridynamics
-          {
-            list.clear();
-            return;
-          }
         const Tensor<1, dim> xi = nodes().position(bond.neighbor) - nodes().position(node);
         list.push_back(
           {bond.neighbor, xi, 0.5 * bond.intact * xi.norm_square(), bond.weight == 0.});
       }
+    return 1.;
   }
 
 

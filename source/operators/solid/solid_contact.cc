@@ -56,9 +56,10 @@ namespace PeriDeal
     contact = std::make_unique<CrackContact<dim>>(
       [this](const unsigned int node, std::vector<typename CrackContact<dim>::Bond> &bonds) {
         bonds.clear();
-        contact_family(node, bonds);
+        return contact_family(node, bonds);
       },
-      mass.get_mpi_communicator());
+      nodes,
+      unknowns);
     set_contact_strains();
     contact->set_rows(owned_nodes());
   }
@@ -93,7 +94,7 @@ namespace PeriDeal
                                        const bool    strained,
                                        const double  multiple) const
   {
-    if (!contact || !contact->touches())
+    if (!contact || !contact->any())
       return;
     const WithGhosts ghosts(u);
     contact->add_forces(y, u, strained, multiple);
@@ -116,34 +117,17 @@ namespace PeriDeal
   {
     if (!contact)
       return 0.;
-    if (contact_change.size() == 0)
-      initialize_vector(contact_change);
-    if (!contact_changes)
-      {
-        contact_change = 0.;
-        contact_change.zero_out_ghost_values();
-      }
     const WithGhosts ghosts(u);
-    return contact->set_rows(of_nodes, u, contact_change, contact_changes);
+    const double     released = contact->set_rows(of_nodes, &u);
+    return contact->any() ? Utilities::MPI::sum(released, mass.get_mpi_communicator()) : 0.;
   }
 
 
   template <int dim>
-  void SolidOperator<dim>::mend_contact(Vector &r) const
+  void SolidOperator<dim>::leave_out_contact(Vector &r) const
   {
-    if (!contact_changes)
-      return;
-    contact_change.compress(VectorOperation::add);
-    r -= contact_change;
-    contact_changes = false;
-  }
-
-
-  template <int dim>
-  void SolidOperator<dim>::leave_out_contact(Vector &r, const Vector &u) const
-  {
-    mend_contact(r);
-    add_contact(r, u, true);
+    if (contact)
+      contact->add_last_forces(r, 1.);
   }
 
 
@@ -172,8 +156,7 @@ namespace PeriDeal
   template double                    SolidOperator<dim>::contact_energy(const Vector &) const; \
   template double SolidOperator<dim>::change_contact(const std::vector<unsigned int> &,        \
                                                      const Vector &);                          \
-  template void   SolidOperator<dim>::mend_contact(Vector &) const;                            \
-  template void   SolidOperator<dim>::leave_out_contact(Vector &, const Vector &) const;       \
+  template void   SolidOperator<dim>::leave_out_contact(Vector &) const;                       \
   template void   SolidOperator<dim>::exchange_contact(Archive &, const NodeKeys &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

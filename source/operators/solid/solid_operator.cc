@@ -215,7 +215,6 @@ namespace PeriDeal
     ++this->applications;
     find_forces(r, u);
     add_contact(r, u, true);
-    contact_changes = false;
     if (loads_vary)
       find_loads(scratch, t);
     NodeLoops::subtract_from(r.begin(),

@@ -86,7 +86,7 @@ namespace PeriDeal
         this->unbalanced(r, u, t);
         return;
       }
-    this->leave_out_contact(r, u);
+    this->leave_out_contact(r);
     u.update_ghost_values();
     Vector change;
     if (solid.laws.volumetric)
@@ -158,12 +158,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::contact_family(const unsigned int                             node,
-                                          std::vector<typename CrackContact<dim>::Bond> &list) const
+  double StateOperator<dim>::contact_family(const unsigned int            node,
+                                            std::vector<FacingBond<dim>> &list) const
   {
     const SolidRows<dim> &rows = solid.rows;
     if (rows.is_on_lattice(node))
-      return;
+      return 0.;
     std::vector<typename Families<dim>::Member> family;
     std::vector<std::pair<unsigned int, int>>   crossed;
     solid.families.members_of(node, family);
@@ -177,15 +177,7 @@ namespace PeriDeal
         const Tensor<1, dim> xi = solid.families.neighbors().bond_vector(node, j);
         bool                 is_lost;
         if (k < rows.end_of(node) && rows.neighbor(k) == j) // left out are those cut at first
-          {
-            const BondState &state = breakage.broken_state();
-            is_lost                = !state.is_whole(k);
-            if (state.is_broken(k++)) // the normal of what has broken is not known well enough
-              {
-                list.clear();
-                return;
-              }
-          }
+          is_lost = !breakage.broken_state().is_whole(k++);
         else
           {
             solid.families.cracks().crossed_cracks(node, j, crossed);
@@ -202,7 +194,7 @@ namespace PeriDeal
     if (!any)
       {
         list.clear();
-        return;
+        return 0.;
       }
     // q may be that of what cracks have left.
     const double whole =
@@ -214,8 +206,7 @@ namespace PeriDeal
                  takes  = solid.laws.volumetric && dim > 1 ?
                             std::min(1., stiff / (3. * moduli.shear)) :
                             1.;
-    for (auto &bond : list)
-      bond.stiffness *= whole * takes;
+    return whole * takes;
   }
 
 
@@ -255,19 +246,18 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &) \
-    const;                                                                                         \
-  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const; \
-  template void StateOperator<dim>::renew_tensions(const Vector &, Vector &) const;                \
-  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);     \
-  template void               StateOperator<dim>::contact_family(                                  \
-    const unsigned int,                                                              \
-    std::vector<typename CrackContact<dim>::Bond> &) const;                          \
-  template void StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool);              \
-  template void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);               \
-  template void StateOperator<dim>::exchange_bonds(Archive &,                                      \
-                                                   const NodeKeys &,                               \
+#define PERIDEAL_INSTANTIATE(dim)                                                                       \
+  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &)      \
+    const;                                                                                              \
+  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const;      \
+  template void StateOperator<dim>::renew_tensions(const Vector &, Vector &) const;                     \
+  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);          \
+  template double             StateOperator<dim>::contact_family(const unsigned int,                    \
+                                                     std::vector<FacingBond<dim>> &) const; \
+  template void               StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool);     \
+  template void               StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);      \
+  template void               StateOperator<dim>::exchange_bonds(Archive &,                             \
+                                                   const NodeKeys &,                      \
                                                    const std::function<void()> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -7,62 +7,54 @@
 
 #include <perideal/base/archive.h>
 #include <perideal/base/types.h>
+#include <perideal/operators/solid/crack_normals.h>
 
 #include <functional>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
 namespace PeriDeal
 {
   /**
    * Faces of cracks that are pressed together: contact without friction, of the bonds that are
-   * gone. With xi a bond of node i that a crack of the scene has cut, x its length, e = xi/x
-   * . (u_j - u_i) - s x its extension (s the mean thermal strain of both ends) and k e^2/2 the half
-   * of its energy that it had at i,
+   * gone. With xi a lost bond of node i, x its length, d = xi/x, e = d . (u_j - u_i) - s x its
+   * extension (s the mean thermal strain of both ends), k e^2/2 the half of its energy that it had
+   * at i and n the normal there (CrackNormals),
    *
-   *   g_i = sum_j k_j a_j e_j,   energy  g_i^2/(2 sum_j k_j a_j^2)  where g_i < 0,
+   *   g_i = sum_j k_j a_j e_j,   energy  c_i g_i^2/(2 sum_j k_j a_j^2)  where g_i < 0,
    *
-   * a_j = (n . xi/x)^2 (1 + l . xi/x), n along the sum of k_j xi over the lost bonds less their
-   * share of that over all, which is normal to a plane crack, and l tangential such that
-   * sum_j k_j a_j xi/x has the direction of n: faces that slide along each other or turn together
-   * feel nothing. What is lost stored at least as much at any u.
+   * a_j = (n . d)^2 (1 - l . d) where n . d > 0, l tangential such that sum_j k_j a_j d has the
+   * direction of n: faces that slide along each other or turn together feel nothing. c_i <= 1 is a
+   * factor of the node. What is lost stored at least as much at any u.
    *
-   * Nodes at which whole bonds go on across the crack, as beside its end, have no contact.
+   * Nodes at which enough whole bonds go on across the crack, as beside its end, have no contact.
    *
    * Which nodes touch is found by update() and stays until the next one, so that forces are linear
-   * between. Ghosts of displacements are up to date where they are read.
+   * between. Ghosts of displacements are up to date where they are read. Forces are sums in the
+   * order of families: the same digits on any number of processes.
    */
   template <int dim>
   class CrackContact
   {
   public:
-    /** A bond of a family. */
-    struct Bond
-    {
-      unsigned int           neighbor; // local number
-      dealii::Tensor<1, dim> xi;
-      double                 stiffness; // k, of the whole bond
-      bool                   is_lost;
-    };
-
-    /** The bonds of an owned node, whole ones included; none at all if none is lost. */
-    using FamilyOf = std::function<void(const unsigned int, std::vector<Bond> &)>;
-
-    CrackContact(const FamilyOf &family_of, const MPI_Comm communicator);
-
-    /** Find what is lost at some owned nodes. Those that are new do not touch. Collective. */
-    void set_rows(const std::vector<unsigned int> &of_nodes);
+    using Bond   = FacingBond<dim>;
+    using Layout = typename CrackNormals<dim>::Layout;
 
     /**
-     * The same at u, at which update() has been called. Returns the energy that contact has
-     * released there, of all processes. Collective.
-     * @param change K u with thermal loads is added to this, not compressed, if it may be any: then
-     *               @p changes is set, on all processes alike
+     * As CrackNormals::FamilyOf; returns c. A pair has the same stiffness at both ends, and is lost
+     * at both or at none.
      */
-    double set_rows(const std::vector<unsigned int> &of_nodes,
-                    const Vector                    &u,
-                    Vector                          &change,
-                    bool                            &changes);
+    using FamilyOf = std::function<double(const unsigned int, std::vector<Bond> &)>;
+
+    /** @param nodes, unknowns layouts; ghosts are all neighbours */
+    CrackContact(const FamilyOf &family_of, const Layout &nodes, const Layout &unknowns);
+
+    /**
+     * Find what is lost at some owned nodes. What is new does not touch, without u; else it does
+     * where it is closed there. Returns the energy that is released so at u by nodes of this
+     * process. Collective.
+     */
+    double set_rows(const std::vector<unsigned int> &of_nodes, const Vector *u = nullptr);
 
     /** Extensions are those beyond thermal strains s at nodes; empty: there are none. */
     void set_strains(const std::function<double(const unsigned int)> &strain_at);
@@ -88,6 +80,9 @@ namespace PeriDeal
      */
     void add_forces(Vector &y, const Vector &u, const bool strained, const double multiple) const;
 
+    /** Add a multiple of what add_forces() gave at last. Not collective. */
+    void add_last_forces(Vector &y, const double multiple) const;
+
     /** The energy of all nodes that touch at u, found or not. Collective. */
     double energy(const Vector &u) const;
 
@@ -103,36 +98,46 @@ namespace PeriDeal
     struct End
     {
       unsigned int           neighbor;
-      dealii::Tensor<1, dim> factor; // k a xi/x
-      double                 length; // k a x
+      dealii::Tensor<1, dim> direction; // d
+      double                 stiffness; // k
+      double                 factor;    // k a; 0: of no effect on this node's g
+      double                 length;    // x
     };
 
+    /** Of an owned node that has lost bonds. */
     struct Row
     {
-      std::vector<End> ends;
-      double           weight   = 0.; // 1/sum of k a^2
-      double           strained = 0.; // what thermal strains have of g
-      bool             touches  = false;
+      unsigned int                   node;
+      std::vector<End>               ends;
+      double                         weight   = 0.; // c/sum of k a^2; 0: no contact
+      double                         strained = 0.; // what thermal strains have of g
+      bool                           touches  = false;
+      mutable dealii::Tensor<1, dim> force; // on the node, at last
     };
 
-    bool   make_row(const std::vector<Bond> &family, Row &row) const;
-    void   find_strained(const unsigned int node, Row &row) const;
-    double gap(const unsigned int node, const Row &row, const double *u) const;
-    double size_of_terms(const unsigned int node, const Row &row, const double *u) const;
-    bool   is_closed(const unsigned int node, const Row &row, const double *u) const;
-    double energy_of(const std::vector<unsigned int> &of_nodes, const double *u) const;
-    void   add_force(const unsigned int node, const Row &row, const double size, double *y) const;
-    void   add_forces_of(const std::vector<unsigned int> &of_nodes,
-                         const double                     multiple,
-                         double                          *y,
-                         const double                    *u) const;
+    Row   &row_of(const unsigned int node);
+    void   make_row(Row &row);
+    bool   has_whole_bonds_across(const dealii::Tensor<1, dim> &normal) const;
+    void   find_strained(Row &row) const;
+    double share_across(const dealii::Tensor<1, dim> &direction,
+                        const dealii::Tensor<1, dim> &normal,
+                        const dealii::Tensor<1, dim> &lean) const;
+    double gap(const Row &row, const double *u) const;
+    double size_of_terms(const Row &row, const double *u) const;
+    bool   is_closed(const Row &row, const double *u) const;
+    double energy_of(const Row &row, const double *u) const;
+    void   find_force(const Row &row) const;
     void   find_any();
 
-    const FamilyOf                            family_of;
-    const MPI_Comm                            communicator;
-    std::function<double(const unsigned int)> strain_at;
-    std::map<unsigned int, Row>               rows; // by the owned node
-    bool                                      any_rows = false, any_closed = false;
-    std::vector<Bond>                         family; // of the node that is looked at
+    const FamilyOf                                 family_of;
+    const Layout                                   nodes, unknowns;
+    CrackNormals<dim>                              normals;
+    std::function<double(const unsigned int)>      strain_at;
+    Vector                                         leans;     // l; once any is lost
+    mutable Vector                                 pressures; // c g/sum of k a^2 where nodes touch
+    std::vector<Row>                               rows;
+    std::unordered_map<unsigned int, unsigned int> row_numbers; // by the owned node
+    bool                                           any_rows = false, any_closed = false;
+    std::vector<Bond>                              family; // of the node that is looked at
   };
 } // namespace PeriDeal

@@ -197,11 +197,10 @@ namespace PeriDeal
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_loads(Vector &loads, const double t) const override;
     void surrogate_made() const override;
-    void contact_family(const unsigned int                             node,
-                        std::vector<typename CrackContact<dim>::Bond> &list) const override
+    double contact_family(const unsigned int            node,
+                          std::vector<FacingBond<dim>> &list) const override
     {
-      if (zone_bonds)
-        zone_bonds->contact_family(node, list);
+      return zone_bonds ? zone_bonds->contact_family(node, list) : 0.;
     }
 
     void exchange_bonds(Archive                     &archive,

@@ -130,9 +130,9 @@ namespace PeriDeal
                        const CrackSideFactors &factors,
                        const ThermalStrain    &strain) const;
 
-    /** The bonds of an owned node, broken ones and such that cracks cut marked as lost. */
-    void contact_family(const unsigned int                             node,
-                        std::vector<typename CrackContact<dim>::Bond> &list) const;
+    /** CrackContact::FamilyOf. */
+    double contact_family(const unsigned int            node,
+                          std::vector<FacingBond<dim>> &list) const;
 
     /** Mark owned nodes with broken bonds, and add what the others give to the trace. */
     void add_to(CrackSideFactors::Sums &sums) const;

@@ -146,9 +146,11 @@ namespace PeriDeal
     void make_contact();
 
     /** CrackContact::FamilyOf. */
-    virtual void contact_family(const unsigned int,
-                                std::vector<typename CrackContact<dim>::Bond> & /*bonds*/) const
-    {}
+    virtual double contact_family(const unsigned int,
+                                  std::vector<FacingBond<dim>> & /*bonds*/) const
+    {
+      return 0.;
+    }
 
     /** Thermal strains have changed. */
     void set_contact_strains();
@@ -168,11 +170,8 @@ namespace PeriDeal
      */
     double change_contact(const std::vector<unsigned int> &of_nodes, const Vector &u);
 
-    /** Mend unbalanced() for these changes of contact. Collective. */
-    void mend_contact(Vector &r) const;
-
-    /** As mend_contact(), and leave no forces of contact in r at all. Collective. */
-    void leave_out_contact(Vector &r, const Vector &u) const;
+    /** Take the forces of contact out of r, which unbalanced() has just given. Not collective. */
+    void leave_out_contact(Vector &r) const;
 
     /** What surrogate() gives, of the body as it is now. Collective. */
     virtual void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const = 0;
@@ -247,9 +246,7 @@ namespace PeriDeal
 
     Vector                             constant_loads;
     mutable Surrogate                  latest;
-    std::unique_ptr<CrackContact<dim>> contact;        // null: faces of cracks bear nothing
-    mutable Vector                     contact_change; // of its forces, since they were all found
-    mutable bool                       contact_changes = false;
+    std::unique_ptr<CrackContact<dim>> contact; // null: faces of cracks bear nothing
 
   protected:
     mutable Vector scratch;

@@ -117,8 +117,8 @@ namespace PeriDeal
                         const std::function<void()> &at_surrogate) override;
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_forces(Vector &y, const Vector &u) const override;
-    void contact_family(const unsigned int                             node,
-                        std::vector<typename CrackContact<dim>::Bond> &list) const override;
+    double contact_family(const unsigned int            node,
+                          std::vector<FacingBond<dim>> &list) const override;
     void find_loads(Vector &loads, const double t) const override;
 
   private:
