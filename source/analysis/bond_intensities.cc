@@ -74,7 +74,7 @@ namespace PeriDeal
               end.add(point);
           }
       }
-    for (const CrackEndIntegral &end : ends)
+    for (CrackEndIntegral &end : ends)
       list.push_back(end.result(nodes.communicator()));
     return list;
   }

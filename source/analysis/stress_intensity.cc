@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/analysis/stress_intensity.h>
 #include <perideal/laws/elasticity.h>
@@ -42,6 +43,14 @@ namespace PeriDeal
           stress[0][1] = c * (1. - s * s3);
         }
       return stress / std::sqrt(2. * pi * r);
+    }
+
+
+    /** 1 at 0 and before, 0 at 1 and behind, without jumps of two derivatives. */
+    double smooth_step(const double s)
+    {
+      const double x = std::clamp(s, 0., 1.);
+      return 1. - x * x * x * (10. - 15. * x + 6. * x * x);
     }
   } // namespace
 
@@ -88,6 +97,7 @@ namespace PeriDeal
                                      const Tensor<1, 2> &along,
                                      const double        inner,
                                      const double        outer,
+                                     const double        core,
                                      const Moduli       &moduli,
                                      const PlaneState    plane,
                                      const int           on_line)
@@ -95,9 +105,12 @@ namespace PeriDeal
     , end(end)
     , inner(inner)
     , outer(outer)
+    , core(core)
     , shear(moduli.shear)
     , lambda(plane_lambda(moduli, plane))
     , on_line(on_line)
+    , strain_of_heat(0, 4, core)
+    , trace_of_stress(-1, 2, core)
   {
     frame[0]        = along;
     frame[1][0]     = -along[1];
@@ -136,8 +149,13 @@ namespace PeriDeal
 
   double CrackEndIntegral::weight_at(const double r) const
   {
-    const double s = std::clamp((r - inner) / (outer - inner), 0., 1.);
-    return 1. - s * s * s * (10. - 15. * s + 6. * s * s);
+    return smooth_step((r - inner) / (outer - inner));
+  }
+
+
+  double CrackEndIntegral::part_of_fits(const double r) const
+  {
+    return smooth_step((r - core) / core);
   }
 
 
@@ -168,24 +186,69 @@ namespace PeriDeal
 
   void CrackEndIntegral::add(const RingPoint &point)
   {
+    add(point, true);
+  }
+
+
+  void CrackEndIntegral::add_strip(const RingPoint    &point,
+                                   const Tensor<1, 2> &normal,
+                                   const bool          for_j)
+  {
+    const Tensor<1, 2> x = frame * (point.place - end);
+    if (x[0] >= 0.)
+      return;
+    const Tensor<1, 2> to_crack = -x[1] * frame[1];
+    RingPoint          strip    = point;
+    strip.weight *= normal * to_crack;
+    strip.node = point.place;
+    strip.place += 0.5 * to_crack;
+    add(strip, for_j);
+  }
+
+
+  Tensor<2, 2> CrackEndIntegral::beside_lips(Tensor<2, 2>        u,
+                                             const Tensor<1, 2> &x,
+                                             const double        reach,
+                                             const double        thermal_strain) const
+  {
+    constexpr double flat = 0.5;
+    if (x[0] >= 0. || std::abs(x[1]) >= std::min(reach, -flat * x[0]))
+      return u;
+    const double ratio = lambda / (lambda + 2. * shear); // in the plane
+    u[1][1]            = thermal_strain - ratio * (u[0][0] - thermal_strain);
+    u[0][1]            = -u[1][0];
+    return u;
+  }
+
+
+  void CrackEndIntegral::add(const RingPoint &point, const bool for_j)
+  {
     double             angle;
     const Tensor<1, 2> x = from_end(point, angle);
     const double       r = x.norm();
     if (r >= outer || r == 0.)
       return;
-    const Tensor<2, 2> u = frame * point.gradient * transpose(frame);
+    const Tensor<2, 2> u = beside_lips(frame * point.gradient * transpose(frame),
+                                       x,
+                                       point.node ? core : 0.,
+                                       point.thermal_strain);
     const auto ahead     = [](const Tensor<2, 2> &t) { return Tensor<1, 2>({t[0][0], t[1][0]}); };
     const SymmetricTensor<2, 2> elastic =
       symmetrize(u) - point.thermal_strain * unit_symmetric_tensor<2>();
     const SymmetricTensor<2, 2> sigma =
       lambda * trace(elastic) * unit_symmetric_tensor<2>() + 2. * shear * elastic;
+    if (r > 0.5 * core && r < 2. * core)
+      strain_of_heat.add(r, angle, point.thermal_strain, point.weight);
+    if (r > core && r < 2. * core)
+      trace_of_stress.add(r, angle, trace(sigma), point.weight);
     const Tensor<1, 2> b     = frame * point.force;
-    const double       warms = frame[0] * point.thermal_slope; // s,1
+    const double       warms = (1. - part_of_fits(r)) * (frame[0] * point.thermal_slope);
     if (b.norm_square() > 0. || warms != 0.)
       {
         // Both do work on the fields that move with the end, wherever q is not 0.
         const double part = point.weight * weight_at(r);
-        sums[0] += part * (trace(sigma) * warms - b * ahead(u));
+        if (for_j)
+          sums[0] += part * (trace(sigma) * warms - b * ahead(u));
         for (unsigned int mode = 0; mode < 2; ++mode)
           sums[1 + mode] +=
             part * (trace(near_stress(mode, r, angle)) * warms - b * near_slope(mode, r, angle));
@@ -194,7 +257,8 @@ namespace PeriDeal
       return;
     const double       s     = (r - inner) / (outer - inner);
     const Tensor<1, 2> slope = (-30. * s * s * (1. - s) * (1. - s) / ((outer - inner) * r)) * x;
-    sums[0] += point.weight * (ahead(u) * (sigma * slope) - 0.5 * (sigma * elastic) * slope[0]);
+    if (for_j)
+      sums[0] += point.weight * (ahead(u) * (sigma * slope) - 0.5 * (sigma * elastic) * slope[0]);
     for (unsigned int mode = 0; mode < 2; ++mode)
       {
         const SymmetricTensor<2, 2> other = near_stress(mode, r, angle);
@@ -205,11 +269,35 @@ namespace PeriDeal
   }
 
 
-  StressIntensity CrackEndIntegral::result(const MPI_Comm communicator) const
+  std::array<double, 3> CrackEndIntegral::work_of_heat_in_core() const
   {
-    double total[3];
+    constexpr unsigned int n_rays = 64; // the integrand has the period 2 pi
+    const double           edge   = std::min(2. * core, outer);
+    const QGauss<1>        radii(32);
+    std::array<double, 3>  work{};
+    for (unsigned int k = 0; k < radii.size(); ++k)
+      for (unsigned int l = 0; l < n_rays; ++l)
+        {
+          const double r     = edge * radii.point(k)[0];
+          const double angle = pi * ((2. * l + 1.) / n_rays - 1.);
+          const double part  = radii.weight(k) * edge * r * (2. * pi / n_rays) * weight_at(r) *
+                              part_of_fits(r) * strain_of_heat.slope_ahead(r, angle);
+          work[0] += part * trace_of_stress.value(r, angle);
+          for (unsigned int mode = 0; mode < 2; ++mode)
+            work[1 + mode] += part * trace(near_stress(mode, r, angle));
+        }
+    return work;
+  }
+
+
+  StressIntensity CrackEndIntegral::result(const MPI_Comm communicator)
+  {
+    strain_of_heat.solve(communicator);
+    trace_of_stress.solve(communicator);
+    const std::array<double, 3> of_core = work_of_heat_in_core();
+    double                      total[3];
     for (unsigned int k = 0; k < 3; ++k)
-      total[k] = Utilities::MPI::sum(sums[k], communicator);
+      total[k] = Utilities::MPI::sum(sums[k], communicator) + of_core[k];
     return {name, total[0], 0.5 * stiffness * total[1], 0.5 * stiffness * total[2]};
   }
 
@@ -295,6 +383,7 @@ namespace PeriDeal
                             along / length,
                             inner,
                             outer,
+                            std::max(size, horizon),
                             of_bonds ? moduli_of_bonds(moduli, scene.elasticity.plane) : moduli,
                             scene.elasticity.plane,
                             e == 1 ? 1 : -1);

@@ -47,7 +47,7 @@ namespace PeriDeal
     class CellPoints
     {
     public:
-      CellPoints(const FEValues<2>                          &values,
+      CellPoints(const FEValuesBase<2>                      &values,
                  const std::vector<types::global_dof_index> &nodes,
                  const Scene<2>                             &scene,
                  const Vector                               &change,
@@ -84,39 +84,78 @@ namespace PeriDeal
       }
 
     private:
-      const FEValues<2>                          &values;
+      const FEValuesBase<2>                      &values;
       const std::vector<types::global_dof_index> &nodes;
       std::vector<double>                         strains; // of heat, at the nodes
     };
   } // namespace
 
 
-  std::vector<StressIntensity> intensities_of_cells(const Scene<2>           &scene,
-                                                    const ElasticElements<2> &elements,
-                                                    const DoFHandler<2>      &dofs,
-                                                    const Vector             &u,
-                                                    const double              t)
+  namespace
   {
-    std::vector<StressIntensity>  list;
-    std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, elements.crack_time());
-    if (ends.empty())
-      return list;
-    FEValues<2>                          values(dofs.get_fe(),
-                       QGauss<2>(dofs.get_fe().degree + more_points_in_rings),
-                       update_values | update_gradients | update_quadrature_points |
-                         update_JxW_values);
-    std::vector<types::global_dof_index> nodes(dofs.get_fe().n_dofs_per_cell());
-    const auto                          &force = scene.initial_and_source.body_force;
-    u.update_ghost_values();
-    for (const auto &cell : dofs.active_cell_iterators())
+    UpdateFlags needed_in_rings()
+    {
+      return update_values | update_gradients | update_quadrature_points | update_JxW_values;
+    }
+
+
+    /** Gives the ends of cracks what cells know. */
+    class RingCells
+    {
+    public:
+      using Cell = DoFHandler<2>::active_cell_iterator;
+
+      /**
+       * @param bonds there are some along cracks
+       * @param t     of body forces
+       */
+      RingCells(const Scene<2>           &scene,
+                const ElasticElements<2> &elements,
+                const DoFHandler<2>      &dofs,
+                const Vector             &u,
+                const bool                bonds,
+                const double              t)
+        : scene(scene)
+        , elements(elements)
+        , u(u)
+        , bonds(bonds)
+        , t(t)
+        , inside(dofs.get_fe(),
+                 QGauss<2>(dofs.get_fe().degree + more_points_in_rings),
+                 needed_in_rings())
+        , edge(dofs.get_fe(),
+               QGauss<1>(dofs.get_fe().degree + more_points_in_rings),
+               needed_in_rings() | update_normal_vectors)
+        , nodes(dofs.get_fe().n_dofs_per_cell())
+      {}
+
+      void add(const Cell &cell, std::vector<CrackEndIntegral> &ends)
       {
-        if (!cell->is_locally_owned() || elements.cut_cells()[cell->active_cell_index()] ||
-            std::none_of(ends.begin(), ends.end(), [&](const CrackEndIntegral &end) {
-              return end.reaches(cell->center(), 0.5 * cell->diameter());
-            }))
-          continue;
-        values.reinit(cell);
+        inside.reinit(cell);
+        visit(cell, inside, [&](const RingPoint &point, const unsigned int) {
+          for (CrackEndIntegral &end : ends)
+            end.add(point);
+        });
+        // Beside a crack that bonds know there is a body up to the crack.
+        for (const unsigned int face : cell->face_indices())
+          {
+            if (cell->at_boundary(face) || !cell->neighbor(face)->is_active() ||
+                !elements.cut_cells()[cell->neighbor(face)->active_cell_index()])
+              continue;
+            edge.reinit(cell, face);
+            visit(cell, edge, [&](const RingPoint &point, const unsigned int q) {
+              for (CrackEndIntegral &end : ends)
+                end.add_strip(point, edge.normal_vector(q), bonds);
+            });
+          }
+      }
+
+    private:
+      template <typename Visit>
+      void visit(const Cell &cell, const FEValuesBase<2> &values, const Visit &give)
+      {
         cell->get_dof_indices(nodes);
+        const auto      &force = scene.initial_and_source.body_force;
         const CellPoints points(values,
                                 nodes,
                                 scene,
@@ -127,12 +166,43 @@ namespace PeriDeal
             RingPoint point = points.at(q, u);
             for (unsigned int d = 0; d < 2 && !force.empty(); ++d)
               point.force[d] = force[d].value(point.place, t);
-            for (CrackEndIntegral &end : ends)
-              end.add(point);
+            give(point, q);
           }
       }
+
+      const Scene<2>                      &scene;
+      const ElasticElements<2>            &elements;
+      const Vector                        &u;
+      const bool                           bonds;
+      const double                         t;
+      FEValues<2>                          inside;
+      FEFaceValues<2>                      edge;
+      std::vector<types::global_dof_index> nodes;
+    };
+  } // namespace
+
+
+  std::vector<StressIntensity> intensities_of_cells(const Scene<2>           &scene,
+                                                    const ElasticElements<2> &elements,
+                                                    const DoFHandler<2>      &dofs,
+                                                    const Vector             &u,
+                                                    const bool                bonds,
+                                                    const double              t)
+  {
+    std::vector<StressIntensity>  list;
+    std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, elements.crack_time());
+    if (ends.empty())
+      return list;
+    RingCells cells(scene, elements, dofs, u, bonds, t);
+    u.update_ghost_values();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && !elements.cut_cells()[cell->active_cell_index()] &&
+          std::any_of(ends.begin(), ends.end(), [&](const CrackEndIntegral &end) {
+            return end.reaches(cell->center(), cell->diameter());
+          }))
+        cells.add(cell, ends);
     u.set_ghost_state(false);
-    for (const CrackEndIntegral &end : ends)
+    for (CrackEndIntegral &end : ends)
       list.push_back(end.result(dofs.get_communicator()));
     return list;
   }

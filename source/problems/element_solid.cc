@@ -194,7 +194,12 @@ namespace PeriDeal
         if constexpr (dim == 2)
           return model == ModelKind::peridynamics ?
                    intensities_of_bonds(scene, *elements, this->displacement, time) :
-                   intensities_of_cells(scene, *elements, handler, this->displacement, time);
+                   intensities_of_cells(scene,
+                                        *elements,
+                                        handler,
+                                        this->displacement,
+                                        model == ModelKind::coupled,
+                                        time);
         else
           return {};
       }

@@ -95,7 +95,7 @@ namespace
   StressIntensity found_of(const CrackedBody &body)
   {
     CrackEndIntegral
-      end("end", Point<2>(), Tensor<1, 2>({1., 0.}), 0.2, 0.5, body.moduli, body.plane);
+      end("end", Point<2>(), Tensor<1, 2>({1., 0.}), 0.2, 0.5, 0.05, body.moduli, body.plane);
     constexpr unsigned int n_rings = 200, n_rays = 400;
     for (unsigned int k = 0; k < n_rings; ++k)
       for (unsigned int l = 0; l < n_rays; ++l)
@@ -139,9 +139,16 @@ TEST(CrackIntensity, nodes_on_the_crack_have_one_side)
 {
   const Moduli moduli = moduli_from(Modulus::young, young, Modulus::poisson, poisson);
   const auto   j_of = [&](const int on_line, const double y, const std::optional<Point<2>> &node) {
-    CrackEndIntegral
-      end("end", Point<2>(), Tensor<1, 2>({1., 0.}), 0.2, 0.5, moduli, PlaneState::stress, on_line);
-    RingPoint point;
+    CrackEndIntegral end("end",
+                         Point<2>(),
+                         Tensor<1, 2>({1., 0.}),
+                         0.2,
+                         0.5,
+                         0.05,
+                         moduli,
+                         PlaneState::stress,
+                         on_line);
+    RingPoint        point;
     point.place          = Point<2>(-0.3, y);
     point.weight         = 1.;
     point.gradient[0][0] = 1.;
@@ -149,13 +156,16 @@ TEST(CrackIntensity, nodes_on_the_crack_have_one_side)
     end.add(point);
     return end.result(MPI_COMM_SELF).mode_2;
   };
-  const double left = j_of(1, 1e-13, {}), right = j_of(1, -1e-13, {});
+  const double left  = j_of(1, 1e-13, Point<2>(-0.31, 0.01)),
+               right = j_of(1, -1e-13, Point<2>(-0.31, -0.01));
   EXPECT_LT(left * right, 0.);
   // What a node on the crack stands for below it is taken on its own side.
   EXPECT_NEAR(j_of(1, -0.02, Point<2>(-0.31, 0.)), left, 1e-9 * std::abs(left));
   EXPECT_NEAR(j_of(-1, 0.02, Point<2>(-0.31, 0.)), right, 1e-9 * std::abs(left));
   EXPECT_NEAR(j_of(1, -0.02, Point<2>(-0.31, 0.01)), left, 1e-9 * std::abs(left));
   EXPECT_NE(j_of(1, 0.02, Point<2>(-0.31, 0.)), left);
+  // There no stress crosses the line of the crack, whatever the gradient says.
+  EXPECT_NE(j_of(1, 1e-13, {}), left);
 }
 
 

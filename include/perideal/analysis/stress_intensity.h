@@ -6,8 +6,10 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
+#include <perideal/analysis/half_power_fit.h>
 #include <perideal/scene/scene.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,8 +47,8 @@ namespace PeriDeal
 
   /**
    * Domain integrals over a ring about the end of a straight crack, in its frame (x_1 ahead of the
-   * crack), with the elastic strain e_ij = (u_i,j + u_j,i)/2 - s delta_ij, s the thermal strain, the
-   * stress sigma of e by Hooke's law, W = sigma : e/2 and the body force b:
+   * crack), with the thermal strain s, the elastic strain e_ij = (u_i,j + u_j,i)/2 - s delta_ij,
+   * the stress sigma of e by Hooke's law, W = sigma : e/2 and the body force b:
    *
    *   J   = int (sigma_ij u_i,1 - W delta_1j) q,j + (sigma_ii s,1 - b_i u_i,1) q dA
    *   K_m = E'/2 int (sigma_ij u^m_i,1 + sigma^m_ij u_i,1 - sigma^m_kl e_kl delta_1j) q,j
@@ -59,6 +61,10 @@ namespace PeriDeal
    * derivatives that do not jump: cells there may be coarse. They hold for one elastic material in
    * the ring without forces on the lips.
    *
+   * What the slope of s does is as much from every annulus down to the end, where no model has the
+   * fields: within some cells, or a horizon, s and the trace of sigma are those of HalfPowerFit
+   * there, that of the trace from an annulus around.
+   *
    * Give add() all points of this process; result() is collective.
    */
   class CrackEndIntegral
@@ -67,6 +73,7 @@ namespace PeriDeal
     /**
      * @param end, along the place of the end and the unit vector ahead of the crack
      * @param inner, outer radii of the ring
+     * @param core within which fields are not those of a continuum, nor beside it to twice that
      * @param on_line nodes on the crack lie on this side of it, 1: left of @p along, or -1
      */
     CrackEndIntegral(const std::string          &name,
@@ -74,6 +81,7 @@ namespace PeriDeal
                      const dealii::Tensor<1, 2> &along,
                      const double                inner,
                      const double                outer,
+                     const double                core,
                      const Moduli               &moduli,
                      const PlaneState            plane,
                      const int                   on_line = 1);
@@ -83,8 +91,17 @@ namespace PeriDeal
 
     void add(const RingPoint &point);
 
+    /**
+     * The strip from the edge of a cell on to the line of the crack, behind its end, where cells
+     * are cut: all in it is as on the edge.
+     * @param point on the edge, its weight a length; normal: out of the cell
+     * @param for_j also for J. Where the cells of the strip are no part of the body it has none
+     *              there; the near-tip fields of K_m have tractions on such an edge.
+     */
+    void add_strip(const RingPoint &point, const dealii::Tensor<1, 2> &normal, const bool for_j);
+
     /** The sums of all processes. Collective. */
-    StressIntensity result(const MPI_Comm communicator) const;
+    StressIntensity result(const MPI_Comm communicator);
 
   private:
     /** In the frame; behind the end no farther than the crack on the side of a node. */
@@ -95,14 +112,31 @@ namespace PeriDeal
                                     const double       r,
                                     const double       angle) const;
 
-    /** q. */
+    /** q, and the part of the field that HalfPowerFit has. */
     double weight_at(const double r) const;
+    double part_of_fits(const double r) const;
+
+    /**
+     * The gradient of a point so near to a lip, at most @p reach, that no stress crosses its line,
+     * to second order in the distance: what bonds or cells beside the crack are stretched by across
+     * it is not that of a continuum.
+     */
+    dealii::Tensor<2, 2> beside_lips(dealii::Tensor<2, 2>        u,
+                                     const dealii::Tensor<1, 2> &x,
+                                     const double                reach,
+                                     const double                thermal_strain) const;
+
+    void add(const RingPoint &point, const bool for_j);
+
+    /** What heat does where HalfPowerFit has the fields: to J and K_m, as in sums. */
+    std::array<double, 3> work_of_heat_in_core() const;
 
     std::string          name;
     dealii::Point<2>     end;
     dealii::Tensor<2, 2> frame; // rows: along the crack, across it
-    double               inner, outer, shear, lambda, kappa, stiffness;
+    double               inner, outer, core, shear, lambda, kappa, stiffness;
     int                  on_line;
+    HalfPowerFit         strain_of_heat, trace_of_stress;
     double               sums[3] = {0., 0., 0.};
   };
 
