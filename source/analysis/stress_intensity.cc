@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/analysis/stress_intensity.h>
 #include <perideal/laws/elasticity.h>
@@ -42,6 +43,14 @@ namespace PeriDeal
           stress[0][1] = c * (1. - s * s3);
         }
       return stress / std::sqrt(2. * pi * r);
+    }
+
+
+    /** 1 at 0 and before, 0 at 1 and behind, without jumps of two derivatives. */
+    double smooth_step(const double s)
+    {
+      const double x = std::clamp(s, 0., 1.);
+      return 1. - x * x * x * (10. - 15. * x + 6. * x * x);
     }
   } // namespace
 
@@ -88,13 +97,20 @@ namespace PeriDeal
                                      const Tensor<1, 2> &along,
                                      const double        inner,
                                      const double        outer,
+                                     const double        core,
                                      const Moduli       &moduli,
-                                     const PlaneState    plane)
+                                     const PlaneState    plane,
+                                     const int           on_line)
     : name(name)
     , end(end)
     , inner(inner)
     , outer(outer)
+    , core(core)
     , shear(moduli.shear)
+    , lambda(plane_lambda(moduli, plane))
+    , on_line(on_line)
+    , strain_of_heat(0, 4, core)
+    , trace_of_stress(-1, 2, core)
   {
     frame[0]        = along;
     frame[1][0]     = -along[1];
@@ -133,8 +149,13 @@ namespace PeriDeal
 
   double CrackEndIntegral::weight_at(const double r) const
   {
-    const double s = std::clamp((r - inner) / (outer - inner), 0., 1.);
-    return 1. - s * s * s * (10. - 15. * s + 6. * s * s);
+    return smooth_step((r - inner) / (outer - inner));
+  }
+
+
+  double CrackEndIntegral::part_of_fits(const double r) const
+  {
+    return smooth_step((r - core) / core);
   }
 
 
@@ -144,51 +165,139 @@ namespace PeriDeal
   }
 
 
-  void CrackEndIntegral::add(const Point<2>              &p,
-                             const double                 weight,
-                             const Tensor<2, 2>          &gradient,
-                             const SymmetricTensor<2, 2> &stress,
-                             const Tensor<1, 2>          &force)
+  Tensor<1, 2> CrackEndIntegral::from_end(const RingPoint &point, double &angle) const
   {
-    const Tensor<1, 2> x = frame * (p - end);
+    Tensor<1, 2> x = frame * (point.place - end);
+    angle          = std::atan2(x[1], x[0]);
+    if (!point.node || x[0] >= 0.)
+      return x;
+    // What a node beside the crack stands for may go on beyond the line.
+    constexpr double slack = 1e-9;
+    const double     apart = frame[1] * (*point.node - end);
+    const double     side  = std::abs(apart) > slack * outer ? apart : on_line;
+    if (side * x[1] < 0.)
+      {
+        x[1]  = 0.;
+        angle = std::copysign(pi, side);
+      }
+    return x;
+  }
+
+
+  void CrackEndIntegral::add(const RingPoint &point)
+  {
+    add(point, true);
+  }
+
+
+  void CrackEndIntegral::add_strip(const RingPoint    &point,
+                                   const Tensor<1, 2> &normal,
+                                   const bool          for_j)
+  {
+    const Tensor<1, 2> x = frame * (point.place - end);
+    if (x[0] >= 0.)
+      return;
+    const Tensor<1, 2> to_crack = -x[1] * frame[1];
+    RingPoint          strip    = point;
+    strip.weight *= normal * to_crack;
+    strip.node = point.place;
+    strip.place += 0.5 * to_crack;
+    add(strip, for_j);
+  }
+
+
+  Tensor<2, 2> CrackEndIntegral::beside_lips(Tensor<2, 2>        u,
+                                             const Tensor<1, 2> &x,
+                                             const double        reach,
+                                             const double        thermal_strain) const
+  {
+    constexpr double flat = 0.5;
+    if (x[0] >= 0. || std::abs(x[1]) >= std::min(reach, -flat * x[0]))
+      return u;
+    const double ratio = lambda / (lambda + 2. * shear); // in the plane
+    u[1][1]            = thermal_strain - ratio * (u[0][0] - thermal_strain);
+    u[0][1]            = -u[1][0];
+    return u;
+  }
+
+
+  void CrackEndIntegral::add(const RingPoint &point, const bool for_j)
+  {
+    double             angle;
+    const Tensor<1, 2> x = from_end(point, angle);
     const double       r = x.norm();
     if (r >= outer || r == 0.)
       return;
-    const double angle = std::atan2(x[1], x[0]);
-    if (force.norm_square() > 0.)
+    const Tensor<2, 2> u = beside_lips(frame * point.gradient * transpose(frame),
+                                       x,
+                                       point.node ? core : 0.,
+                                       point.thermal_strain);
+    const auto ahead     = [](const Tensor<2, 2> &t) { return Tensor<1, 2>({t[0][0], t[1][0]}); };
+    const SymmetricTensor<2, 2> elastic =
+      symmetrize(u) - point.thermal_strain * unit_symmetric_tensor<2>();
+    const SymmetricTensor<2, 2> sigma =
+      lambda * trace(elastic) * unit_symmetric_tensor<2>() + 2. * shear * elastic;
+    if (r > 0.5 * core && r < 2. * core)
+      strain_of_heat.add(r, angle, point.thermal_strain, point.weight);
+    if (r > core && r < 2. * core)
+      trace_of_stress.add(r, angle, trace(sigma), point.weight);
+    const Tensor<1, 2> b     = frame * point.force;
+    const double       warms = (1. - part_of_fits(r)) * (frame[0] * point.thermal_slope);
+    if (b.norm_square() > 0. || warms != 0.)
       {
-        // A body force does work on the fields that move with the end, wherever q is not 0.
-        const double       q = weight_at(r);
-        const Tensor<1, 2> b = frame * force;
-        const Tensor<2, 2> u = frame * gradient * transpose(frame);
-        sums[0] -= weight * q * (b * Tensor<1, 2>({u[0][0], u[1][0]}));
+        // Both do work on the fields that move with the end, wherever q is not 0.
+        const double part = point.weight * weight_at(r);
+        if (for_j)
+          sums[0] += part * (trace(sigma) * warms - b * ahead(u));
         for (unsigned int mode = 0; mode < 2; ++mode)
-          sums[1 + mode] -= weight * q * (b * near_slope(mode, r, angle));
+          sums[1 + mode] +=
+            part * (trace(near_stress(mode, r, angle)) * warms - b * near_slope(mode, r, angle));
       }
     if (r <= inner)
       return;
     const double       s     = (r - inner) / (outer - inner);
     const Tensor<1, 2> slope = (-30. * s * s * (1. - s) * (1. - s) / ((outer - inner) * r)) * x;
-    const Tensor<2, 2> u     = frame * gradient * transpose(frame);
-    const Tensor<2, 2> sigma = frame * static_cast<Tensor<2, 2>>(stress) * transpose(frame);
-    const auto   ahead  = [](const Tensor<2, 2> &t) { return Tensor<1, 2>({t[0][0], t[1][0]}); };
-    const double energy = 0.5 * scalar_product(sigma, u);
-    sums[0] += weight * (ahead(u) * (sigma * slope) - energy * slope[0]);
+    if (for_j)
+      sums[0] += point.weight * (ahead(u) * (sigma * slope) - 0.5 * (sigma * elastic) * slope[0]);
     for (unsigned int mode = 0; mode < 2; ++mode)
       {
-        const Tensor<2, 2> other = near_stress(mode, r, angle);
+        const SymmetricTensor<2, 2> other = near_stress(mode, r, angle);
         sums[1 + mode] +=
-          weight * (near_slope(mode, r, angle) * (sigma * slope) + ahead(u) * (other * slope) -
-                    scalar_product(other, u) * slope[0]);
+          point.weight * (near_slope(mode, r, angle) * (sigma * slope) +
+                          ahead(u) * (other * slope) - (other * elastic) * slope[0]);
       }
   }
 
 
-  StressIntensity CrackEndIntegral::result(const MPI_Comm communicator) const
+  std::array<double, 3> CrackEndIntegral::work_of_heat_in_core() const
   {
-    double total[3];
+    constexpr unsigned int n_rays = 64; // the integrand has the period 2 pi
+    const double           edge   = std::min(2. * core, outer);
+    const QGauss<1>        radii(32);
+    std::array<double, 3>  work{};
+    for (unsigned int k = 0; k < radii.size(); ++k)
+      for (unsigned int l = 0; l < n_rays; ++l)
+        {
+          const double r     = edge * radii.point(k)[0];
+          const double angle = pi * ((2. * l + 1.) / n_rays - 1.);
+          const double part  = radii.weight(k) * edge * r * (2. * pi / n_rays) * weight_at(r) *
+                              part_of_fits(r) * strain_of_heat.slope_ahead(r, angle);
+          work[0] += part * trace_of_stress.value(r, angle);
+          for (unsigned int mode = 0; mode < 2; ++mode)
+            work[1 + mode] += part * trace(near_stress(mode, r, angle));
+        }
+    return work;
+  }
+
+
+  StressIntensity CrackEndIntegral::result(const MPI_Comm communicator)
+  {
+    strain_of_heat.solve(communicator);
+    trace_of_stress.solve(communicator);
+    const std::array<double, 3> of_core = work_of_heat_in_core();
+    double                      total[3];
     for (unsigned int k = 0; k < 3; ++k)
-      total[k] = Utilities::MPI::sum(sums[k], communicator);
+      total[k] = Utilities::MPI::sum(sums[k], communicator) + of_core[k];
     return {name, total[0], 0.5 * stiffness * total[1], 0.5 * stiffness * total[2]};
   }
 
@@ -223,18 +332,30 @@ namespace PeriDeal
   } // namespace
 
 
-  std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene, const double time)
+  namespace
+  {
+    /** Those that a body of bonds has: its Poisson ratio is its own (bond_law()). */
+    Moduli moduli_of_bonds(const Moduli &given, const PlaneState plane)
+    {
+      return moduli_from(Modulus::shear,
+                         0.5 * (plane_lambda(given, plane) + given.shear),
+                         Modulus::poisson,
+                         bond_based_poisson(2, plane));
+    }
+  } // namespace
+
+
+  std::vector<CrackEndIntegral> crack_end_integrals(const Scene<2> &scene,
+                                                    const double    time,
+                                                    const double    horizon)
   {
     std::vector<CrackEndIntegral> list;
     const auto                   &cracks   = scene.cracks.cracks;
     const Material               &material = scene.material;
-    const bool                    warm     = scene.elasticity.computes_temperature ||
-                      !scene.elasticity.temperature_change.is_constant() ||
-                      scene.elasticity.temperature_change.value(Point<2>()) != 0.;
     const double size     = 2. * scene.domain.spacing().norm(); // of cells: a ring has to hold some
     const bool   is_plate = scene.domain.shape == Shape::box ||
                           scene.domain.shape == Shape::plate_with_hole;
-    if (!scene.elasticity.is_static() || !is_plate || !material.uniform_moduli() || warm)
+    if (!scene.elasticity.is_static() || !is_plate || !material.uniform_moduli())
       return list;
     const std::vector<CrackPiece<2>> pieces = scene.cracks.pieces(time);
     for (unsigned int k = 0; k < cracks.size(); ++k)
@@ -252,15 +373,20 @@ namespace PeriDeal
           for (const CrackPiece<2> &piece : pieces)
             if (piece.crack != k)
               room = std::min(room, distance_to_piece(piece.corners, end));
-          if (0.45 * room < size)
+          const double inner = std::max(0.45 * room, horizon), outer = 0.9 * room;
+          if (outer - inner < size)
             continue;
+          const bool   of_bonds = horizon > 0. && scene.elasticity.is_bond_based();
+          const Moduli moduli   = material.moduli(end);
           list.emplace_back("crack " + std::to_string(k + 1) + " end " + std::to_string(e + 1),
                             end,
                             along / length,
-                            0.45 * room,
-                            0.9 * room,
-                            material.moduli(end),
-                            scene.elasticity.plane);
+                            inner,
+                            outer,
+                            std::max(size, horizon),
+                            of_bonds ? moduli_of_bonds(moduli, scene.elasticity.plane) : moduli,
+                            scene.elasticity.plane,
+                            e == 1 ? 1 : -1);
         }
     return list;
   }

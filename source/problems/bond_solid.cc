@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/analysis/bond_intensities.h>
 #include <perideal/operators/solid/state_operator.h>
 #include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/lists.h>
@@ -166,6 +167,27 @@ namespace PeriDeal
           }
         return Utilities::MPI::sum(sum, handler.get_communicator()) /
                Utilities::MPI::sum(volume, handler.get_communicator());
+      }
+
+      std::vector<StressIntensity> stress_intensities(const double time) const override
+      {
+        std::vector<StressIntensity> list;
+        if constexpr (dim == 2)
+          {
+            const ThermalStrains &thermal = states->bonds().thermal;
+            this->displacement.update_ghost_values();
+            list = bond_intensities(
+              scene,
+              states->bonds().families,
+              [&](const unsigned int i, const unsigned int k) {
+                return k < dim ? this->displacement.local_element(dim * i + k) : thermal[i];
+              },
+              thermal.any(),
+              time,
+              states->crack_time());
+            this->displacement.set_ghost_state(false);
+          }
+        return list;
       }
 
       std::vector<StressSample> stress_samples() const override

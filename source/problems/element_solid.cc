@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "diffusion_parts.h"
+#include "element_intensities.h"
 #include "solid_fields.h"
 
 namespace PeriDeal
@@ -22,13 +23,6 @@ namespace PeriDeal
 
   namespace
   {
-    /**
-     * Gauss points along an edge in rings about ends of cracks, above the degree of elements: the
-     * weights and near fields are no polynomials, and cells may be a third of a ring.
-     */
-    constexpr unsigned int more_points_in_rings = 5;
-
-
     template <int dim>
     class ElementSolid : public SolidProblem<dim>
     {
@@ -197,42 +191,17 @@ namespace PeriDeal
 
       std::vector<StressIntensity> stress_intensities(const double time) const override
       {
-        std::vector<StressIntensity> list;
         if constexpr (dim == 2)
-          {
-            std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, elements->crack_time());
-            if (ends.empty())
-              return list;
-            const auto is_in_a_ring = [&](const auto &cell) {
-              return !elements->cut_cells()[cell->active_cell_index()] &&
-                     std::any_of(ends.begin(), ends.end(), [&](const CrackEndIntegral &end) {
-                       return end.reaches(cell->center(), 0.5 * cell->diameter());
-                     });
-            };
-            const auto &given = scene.initial_and_source.body_force;
-            visit_cells(
-              QGauss<dim>(handler.get_fe().degree + more_points_in_rings),
-              [&](const auto        &values,
-                  const unsigned int q,
-                  const auto        &indices,
-                  const auto        &gradient) {
-                const Point<2>             &p = values.quadrature_point(q);
-                const SymmetricTensor<2, 3> s = stress_at(values, q, indices, gradient, p);
-                SymmetricTensor<2, 2>       in_plane;
-                for (unsigned int a = 0; a < 2; ++a)
-                  for (unsigned int b = a; b < 2; ++b)
-                    in_plane[a][b] = s[a][b];
-                Tensor<1, 2> force;
-                for (unsigned int a = 0; a < 2 && !given.empty(); ++a)
-                  force[a] = given[a].value(p, time);
-                for (CrackEndIntegral &end : ends)
-                  end.add(p, values.JxW(q), gradient, in_plane, force);
-              },
-              is_in_a_ring);
-            for (const CrackEndIntegral &end : ends)
-              list.push_back(end.result(handler.get_communicator()));
-          }
-        return list;
+          return model == ModelKind::peridynamics ?
+                   intensities_of_bonds(scene, *elements, this->displacement, time) :
+                   intensities_of_cells(scene,
+                                        *elements,
+                                        handler,
+                                        this->displacement,
+                                        model == ModelKind::coupled,
+                                        time);
+        else
+          return {};
       }
 
       std::vector<StressSample> stress_samples() const override

@@ -213,9 +213,10 @@ namespace PeriDeal
           const double first = value["I"], second = value["II"];
           if (first > -some * std::hypot(first, second) || first == 0.)
             continue;
-          const bool knows = run.scene.elasticity.contact && run.scene.coupling.exchanges() &&
-                             !run.scene.cracks.on_faces() &&
-                             run.name() == to_string(ModelKind::coupled);
+          const bool knows = run.scene.elasticity.contact &&
+                             (run.name() == to_string(ModelKind::peridynamics) ||
+                              (run.name() == to_string(ModelKind::coupled) &&
+                               run.scene.coupling.exchanges() && !run.scene.cracks.on_faces()));
           context.record.notes.push_back(
             run.name() + ": K_I at " + end + " is negative: the faces of the crack " +
             (knows ?

@@ -165,20 +165,18 @@ namespace PeriDeal
         return "";
       if (dim == 3)
         return "they are computed in two dimensions only";
-      bool found = false, local = false, all = true;
+      bool found = false, all = true;
       for (const auto &[name, model] : models.items())
         {
           const bool has = model.contains("stress intensity");
           found          = found || has;
           all            = all && has;
-          local          = local || name != to_string(ModelKind::peridynamics);
         }
       if (found)
-        return all ? "" : "peridynamics has none: they follow from the local stress of elements";
-      if (!local)
-        return "they follow from the local stress of elements, which peridynamics alone has not: add "
-               "'finite elements' or 'coupled' to 'Models'";
-      return "they need a box or a plate of one material without heating, and room around the end of a crack for some cells";
+        return all ?
+                 "" :
+                 "peridynamics has none: its rings begin beyond one horizon from the end of a crack, and there is no room for some cells around that";
+      return "they need a box or a plate whose moduli are the same everywhere, and room around the end of a crack for some cells, with peridynamics beyond one horizon";
     }
   } // namespace
 

@@ -246,7 +246,7 @@ namespace PeriDeal
         scene.accuracy.refuse(
           family.n_tried() >= most_unknown && family.n_compared() < 2,
           "Measure",
-          "is 'stress intensity', but there is none: it needs a box of one material without heating, and "
+          "is 'stress intensity', but there is none: it needs a box with the same moduli everywhere, and "
           "room around the ends of cracks for some cells.");
         if (family.n_tried() >= most)
           return std::to_string(most) + " tries";

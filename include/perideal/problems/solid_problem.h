@@ -109,7 +109,7 @@ namespace PeriDeal
     /** The mean stress over the volume of the body: what the body as a whole carries. */
     virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
 
-    /** At the ends of cracks, where the model has a local stress (crack_end_integrals()). */
+    /** At the ends of cracks, where there is room for rings (crack_end_integrals()). */
     virtual std::vector<StressIntensity> stress_intensities(const double /*time*/) const
     {
       return {};

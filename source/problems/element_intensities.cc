@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "element_intensities.h"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/analysis/bond_intensities.h>
+#include <perideal/laws/elasticity.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Gauss points along an edge in rings about ends of cracks, above the degree of elements: the
+     * weights and near fields are no polynomials, and cells may be a third of a ring.
+     */
+    constexpr unsigned int more_points_in_rings = 5;
+
+
+    bool is_warm(const ElasticityControl &elasticity)
+    {
+      return elasticity.computes_temperature || !elasticity.temperature_change.is_constant() ||
+             elasticity.temperature_change.value(Point<2>()) != 0.;
+    }
+
+
+    /** Within the plane. @param change of the temperature, if it is computed */
+    double strain_of_heat(const Scene<2>               &scene,
+                          const Point<2>               &p,
+                          const Vector                 &change,
+                          const types::global_dof_index node)
+    {
+      return thermal_strain_factor(scene.material.moduli(p), 2, scene.elasticity.plane) *
+             scene.material.thermal_expansion.value(p) *
+             (change.size() > 0 ? change(node) : scene.elasticity.temperature_change.value(p));
+    }
+
+
+    /** What an element knows of one of its points; FEValues has been through reinit(). */
+    class CellPoints
+    {
+    public:
+      CellPoints(const FEValuesBase<2>                      &values,
+                 const std::vector<types::global_dof_index> &nodes,
+                 const Scene<2>                             &scene,
+                 const Vector                               &change,
+                 const bool                                  warm)
+        : values(values)
+        , nodes(nodes)
+      {
+        const auto &cell = values.get_cell();
+        for (unsigned int k = 0; k < nodes.size() && warm; ++k)
+          {
+            const Point<2> node = values.get_mapping().transform_unit_to_real_cell(
+              cell,
+              values.get_fe().unit_support_point(k));
+            // On the cell's own side of cracks, with its own material.
+            strains.push_back(
+              strain_of_heat(scene, node + 1e-6 * (cell->center() - node), change, nodes[k]));
+          }
+      }
+
+      RingPoint at(const unsigned int q, const Vector &u) const
+      {
+        RingPoint point;
+        point.place  = values.quadrature_point(q);
+        point.weight = values.JxW(q);
+        for (unsigned int k = 0; k < nodes.size(); ++k)
+          for (unsigned int d = 0; d < 2; ++d)
+            point.gradient[d] += u(2 * nodes[k] + d) * values.shape_grad(k, q);
+        for (unsigned int k = 0; k < strains.size(); ++k)
+          {
+            point.thermal_strain += strains[k] * values.shape_value(k, q);
+            point.thermal_slope += strains[k] * values.shape_grad(k, q);
+          }
+        return point;
+      }
+
+    private:
+      const FEValuesBase<2>                      &values;
+      const std::vector<types::global_dof_index> &nodes;
+      std::vector<double>                         strains; // of heat, at the nodes
+    };
+  } // namespace
+
+
+  namespace
+  {
+    UpdateFlags needed_in_rings()
+    {
+      return update_values | update_gradients | update_quadrature_points | update_JxW_values;
+    }
+
+
+    /** Gives the ends of cracks what cells know. */
+    class RingCells
+    {
+    public:
+      using Cell = DoFHandler<2>::active_cell_iterator;
+
+      /**
+       * @param bonds there are some along cracks
+       * @param t     of body forces
+       */
+      RingCells(const Scene<2>           &scene,
+                const ElasticElements<2> &elements,
+                const DoFHandler<2>      &dofs,
+                const Vector             &u,
+                const bool                bonds,
+                const double              t)
+        : scene(scene)
+        , elements(elements)
+        , u(u)
+        , bonds(bonds)
+        , t(t)
+        , inside(dofs.get_fe(),
+                 QGauss<2>(dofs.get_fe().degree + more_points_in_rings),
+                 needed_in_rings())
+        , edge(dofs.get_fe(),
+               QGauss<1>(dofs.get_fe().degree + more_points_in_rings),
+               needed_in_rings() | update_normal_vectors)
+        , nodes(dofs.get_fe().n_dofs_per_cell())
+      {}
+
+      void add(const Cell &cell, std::vector<CrackEndIntegral> &ends)
+      {
+        inside.reinit(cell);
+        visit(cell, inside, [&](const RingPoint &point, const unsigned int) {
+          for (CrackEndIntegral &end : ends)
+            end.add(point);
+        });
+        // Beside a crack that bonds know there is a body up to the crack.
+        for (const unsigned int face : cell->face_indices())
+          {
+            if (cell->at_boundary(face) || !cell->neighbor(face)->is_active() ||
+                !elements.cut_cells()[cell->neighbor(face)->active_cell_index()])
+              continue;
+            edge.reinit(cell, face);
+            visit(cell, edge, [&](const RingPoint &point, const unsigned int q) {
+              for (CrackEndIntegral &end : ends)
+                end.add_strip(point, edge.normal_vector(q), bonds);
+            });
+          }
+      }
+
+    private:
+      template <typename Visit>
+      void visit(const Cell &cell, const FEValuesBase<2> &values, const Visit &give)
+      {
+        cell->get_dof_indices(nodes);
+        const auto      &force = scene.initial_and_source.body_force;
+        const CellPoints points(values,
+                                nodes,
+                                scene,
+                                elements.temperature_change(),
+                                is_warm(scene.elasticity));
+        for (const unsigned int q : values.quadrature_point_indices())
+          {
+            RingPoint point = points.at(q, u);
+            for (unsigned int d = 0; d < 2 && !force.empty(); ++d)
+              point.force[d] = force[d].value(point.place, t);
+            give(point, q);
+          }
+      }
+
+      const Scene<2>                      &scene;
+      const ElasticElements<2>            &elements;
+      const Vector                        &u;
+      const bool                           bonds;
+      const double                         t;
+      FEValues<2>                          inside;
+      FEFaceValues<2>                      edge;
+      std::vector<types::global_dof_index> nodes;
+    };
+  } // namespace
+
+
+  std::vector<StressIntensity> intensities_of_cells(const Scene<2>           &scene,
+                                                    const ElasticElements<2> &elements,
+                                                    const DoFHandler<2>      &dofs,
+                                                    const Vector             &u,
+                                                    const bool                bonds,
+                                                    const double              t)
+  {
+    std::vector<StressIntensity>  list;
+    std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, elements.crack_time());
+    if (ends.empty())
+      return list;
+    RingCells cells(scene, elements, dofs, u, bonds, t);
+    u.update_ghost_values();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && !elements.cut_cells()[cell->active_cell_index()] &&
+          std::any_of(ends.begin(), ends.end(), [&](const CrackEndIntegral &end) {
+            return end.reaches(cell->center(), cell->diameter());
+          }))
+        cells.add(cell, ends);
+    u.set_ghost_state(false);
+    for (CrackEndIntegral &end : ends)
+      list.push_back(end.result(dofs.get_communicator()));
+    return list;
+  }
+
+
+  std::vector<StressIntensity> intensities_of_bonds(const Scene<2>           &scene,
+                                                    const ElasticElements<2> &elements,
+                                                    const Vector             &u,
+                                                    const double              t)
+  {
+    const Nodes<2> &nodes  = elements.bonds().families().nodes();
+    const Vector   &change = elements.temperature_change();
+    u.update_ghost_values();
+    const auto list = bond_intensities(
+      scene,
+      elements.bonds().families(),
+      [&](const unsigned int i, const unsigned int k) {
+        // Elements may number ghosts in another order.
+        const auto index = nodes.partitioner()->local_to_global(i);
+        return k < 2 ? u(2 * index + k) : strain_of_heat(scene, nodes.position(i), change, index);
+      },
+      is_warm(scene.elasticity),
+      t,
+      elements.crack_time());
+    u.set_ghost_state(false);
+    return list;
+  }
+} // namespace PeriDeal
