@@ -139,6 +139,7 @@ namespace PeriDeal
 
   private:
     void                      find_critical_stretches();
+    void                      watch_limits(); // of full kinematics
     std::pair<double, double> stretch_and_limit(
       const double                        *u,
       const unsigned int                   i,

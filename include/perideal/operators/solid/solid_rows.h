@@ -6,6 +6,7 @@
 #include <perideal/bonds/bond_state.h>
 #include <perideal/bonds/families.h>
 #include <perideal/mesh/lattice_sites.h>
+#include <perideal/operators/solid/deformed_rows.h>
 #include <perideal/operators/solid/node_laws.h>
 
 #include <algorithm>
@@ -148,6 +149,15 @@ namespace PeriDeal
 
     /** Make the springs of the whole bonds of an owned node those of q as it is now. */
     void renew_springs(const unsigned int i, const BondState &state);
+
+    /** The rows of a body that stores all of its bonds; referred to. */
+    void show(DeformedRows &to) const
+    {
+      to.starts    = starts.data();
+      to.end       = starts.size() - 1;
+      to.neighbors = neighbors.data();
+      to.springs   = springs.data();
+    }
 
     /** Make a stored bond that of the tangent. */
     void set_moment(const std::size_t number, const dealii::Tensor<1, dim> &moment)
