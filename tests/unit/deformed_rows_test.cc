@@ -18,9 +18,10 @@ namespace
   template <int dim>
   Body<dim> brittle_body(const Settings &more)
   {
-    return Body<dim>(box<dim>() + Settings{{"Elasticity/Kinematics", "full"},
-                                           {"Elasticity/Solver", "dynamics"},
-                                           {"Material/Critical stretch", "0.25 + 0.05*x"}} +
+    return Body<dim>(box<dim>() +
+                       Settings{{"Elasticity/Kinematics", "full"},
+                                {"Elasticity/Solver", "dynamics"},
+                                {"Material/Critical stretch", "0.25 + 0.05*x"}} +
                        more,
                      ModelKind::peridynamics);
   }

@@ -156,7 +156,7 @@ namespace PeriDeal
           {
             bool any = false;
             if (screen->may_reach(i, u, least_strain))
-              rows.for_each_to_store(i, family, [&](const auto &bond) {
+              rows.for_each(i, [&](const auto &bond) {
                 const auto [found, limit] = stretch_and_limit(u, i, bond);
                 any                       = any || found > limit;
               });

@@ -178,7 +178,7 @@ namespace PeriDeal
   template <int dim>
   double BondKinematics<dim>::energy_of_extensions(const double *u) const
   {
-    double       sum     = 0.;
+    double            sum = 0.;
     const Nodes<dim> &own = families.nodes();
     if (full)
       {

@@ -88,7 +88,7 @@ namespace PeriDeal
       {
         const D      d;
         const double half = 0.5, *const own = rows.nodes[i].numbers;
-        V            there[8];
+        V there[8];
         for (int k = 0; k < 8; k += 2)
           load_numbers(rows.nodes, neighbors, k, there[k], there[k + 1]);
         V square = hn::Zero(d), square_now = hn::Zero(d);
@@ -103,11 +103,11 @@ namespace PeriDeal
             square_now  = hn::MulAdd(along[c], along[c], square_now);
             difference  = hn::MulAdd(hn::Add(hn::Add(xi, xi), eta), eta, difference);
           }
-        x      = hn::Sqrt(square);
-        norm   = hn::Sqrt(square_now);
-        tau    = there[Node::tau];
-        strain = hn::Mul(hn::Set(d, half),
-                         hn::Add(there[Node::strain], hn::Set(d, own[Node::strain])));
+        x    = hn::Sqrt(square);
+        norm = hn::Sqrt(square_now);
+        tau  = there[Node::tau];
+        strain =
+          hn::Mul(hn::Set(d, half), hn::Add(there[Node::strain], hn::Set(d, own[Node::strain])));
       }
     };
 
@@ -132,8 +132,8 @@ namespace PeriDeal
 
 
     /**
-     * Visit the bonds of a row, a vector at a time, with W x and springs. Numbers of bonds that bear
-     * nothing need not be finite.
+     * Visit the bonds of a row, a vector at a time, with W x and springs. Numbers of bonds that
+     * bear nothing need not be finite.
      */
     template <int dim, typename Visit>
     HWY_INLINE void for_each_of(const DeformedRows &rows, const std::size_t i, const Visit &visit)
@@ -183,16 +183,16 @@ namespace PeriDeal
       for (std::size_t i = rows.begin; i < rows.end; ++i)
         {
           V sum = hn::Zero(d), square = hn::Zero(d);
-          for_each_of<dim>(
-            rows,
-            i,
-            [&](const Bonds<dim> &bonds, const V length, const V spring) HWY_ATTR {
-              const V gap   = hn::Div(bonds.difference, hn::Add(bonds.norm, bonds.x));
-              const V found = where_it_bears(length,
-                                             hn::Mul(length, extension<strained>(bonds, gap)));
-              sum           = hn::Add(sum, found);
-              square        = hn::MulAdd(hn::Mul(spring, found), found, square);
-            });
+          for_each_of<dim>(rows,
+                           i,
+                           [&](const Bonds<dim> &bonds, const V length, const V spring) HWY_ATTR {
+                             const V gap = hn::Div(bonds.difference, hn::Add(bonds.norm, bonds.x));
+                             const V found =
+                               where_it_bears(length,
+                                              hn::Mul(length, extension<strained>(bonds, gap)));
+                             sum    = hn::Add(sum, found);
+                             square = hn::MulAdd(hn::Mul(spring, found), found, square);
+                           });
           sums[i] = sum_of(sum);
           if (squares != nullptr)
             squares[i] = sum_of(square);
@@ -201,18 +201,15 @@ namespace PeriDeal
 
 
     template <int dim, bool strained, bool limited>
-    void forces(const DeformedRows &rows,
-                const double       *limits,
-                double             *y,
-                unsigned char      *exceeds)
+    void forces(const DeformedRows &rows, const double *limits, double *y, unsigned char *exceeds)
     {
       const D d;
       for (std::size_t i = rows.begin; i < rows.end; ++i)
         {
           const V own   = hn::Set(d, rows.nodes[i].numbers[Node::tau]),
                   limit = hn::Set(d, limited ? limits[i] : 0.);
-          V       most  = hn::Zero(d); // e - limit x of the bonds, if that is above 0
-          V       sum[dim];
+          V most        = hn::Zero(d); // e - limit x of the bonds, if that is above 0
+          V sum[dim];
           for (int c = 0; c < dim; ++c)
             sum[c] = hn::Zero(d);
           for_each_of<dim>(
@@ -224,7 +221,7 @@ namespace PeriDeal
               const V inverse = hn::Div(hn::Set(d, 1.), hn::Mul(both, bonds.norm));
               const V gap     = hn::Mul(hn::Mul(bonds.difference, bonds.norm), inverse);
               const V e       = extension<strained>(bonds, gap);
-              const V size = hn::MulAdd(hn::Mul(spring, length), e, hn::Add(own, bonds.tau));
+              const V size    = hn::MulAdd(hn::Mul(spring, length), e, hn::Add(own, bonds.tau));
               const V factor =
                 where_it_bears(length, hn::Mul(hn::Mul(size, length), hn::Mul(both, inverse)));
               for (int c = 0; c < dim; ++c)
@@ -245,40 +242,36 @@ namespace PeriDeal
     {
       V most = hn::Zero(D());
       for (std::size_t i = rows.begin; i < rows.end; ++i)
-        for_each_of<dim>(
-          rows,
-          i,
-          [&](const Bonds<dim> &bonds, const V length, const V) HWY_ATTR {
-            const V both = hn::Mul(hn::Add(bonds.norm, bonds.x), bonds.x);
-            most         = hn::Max(most,
-                           where_it_bears(length, hn::Abs(hn::Div(bonds.difference, both))));
-          });
+        for_each_of<dim>(rows, i, [&](const Bonds<dim> &bonds, const V length, const V) HWY_ATTR {
+          const V both = hn::Mul(hn::Add(bonds.norm, bonds.x), bonds.x);
+          most = hn::Max(most, where_it_bears(length, hn::Abs(hn::Div(bonds.difference, both))));
+        });
       return hn::GetLane(hn::MaxOfLanes(D(), most));
     }
 
 
     // What is exported is no template.
-#define PERIDEAL_OF_DIMENSION(dim)                                                                 \
-  void extensions_##dim(const DeformedRows &rows, double *sums, double *squares)                   \
-  {                                                                                                \
-    rows.strained ? extensions<dim, true>(rows, sums, squares) :                                   \
-                    extensions<dim, false>(rows, sums, squares);                                   \
-  }                                                                                                \
-  void forces_##dim(const DeformedRows &rows,                                                      \
-                    const double       *limits,                                                    \
-                    double             *y,                                                         \
-                    unsigned char      *exceeds)                                                   \
-  {                                                                                                \
-    if (limits != nullptr)                                                                         \
-      rows.strained ? forces<dim, true, true>(rows, limits, y, exceeds) :                          \
-                      forces<dim, false, true>(rows, limits, y, exceeds);                          \
-    else                                                                                           \
-      rows.strained ? forces<dim, true, false>(rows, limits, y, exceeds) :                         \
-                      forces<dim, false, false>(rows, limits, y, exceeds);                         \
-  }                                                                                                \
-  double largest_stretch_##dim(const DeformedRows &rows)                                           \
-  {                                                                                                \
-    return largest_stretch<dim>(rows);                                                             \
+#define PERIDEAL_OF_DIMENSION(dim)                                               \
+  void extensions_##dim(const DeformedRows &rows, double *sums, double *squares) \
+  {                                                                              \
+    rows.strained ? extensions<dim, true>(rows, sums, squares) :                 \
+                    extensions<dim, false>(rows, sums, squares);                 \
+  }                                                                              \
+  void forces_##dim(const DeformedRows &rows,                                    \
+                    const double       *limits,                                  \
+                    double             *y,                                       \
+                    unsigned char      *exceeds)                                 \
+  {                                                                              \
+    if (limits != nullptr)                                                       \
+      rows.strained ? forces<dim, true, true>(rows, limits, y, exceeds) :        \
+                      forces<dim, false, true>(rows, limits, y, exceeds);        \
+    else                                                                         \
+      rows.strained ? forces<dim, true, false>(rows, limits, y, exceeds) :       \
+                      forces<dim, false, false>(rows, limits, y, exceeds);       \
+  }                                                                              \
+  double largest_stretch_##dim(const DeformedRows &rows)                         \
+  {                                                                              \
+    return largest_stretch<dim>(rows);                                           \
   }
     PERIDEAL_OF_DIMENSION(1)
     PERIDEAL_OF_DIMENSION(2)
@@ -292,27 +285,27 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace PeriDeal
 {
-#  define PERIDEAL_DISPATCH(dim)                                                                   \
-    HWY_EXPORT(extensions_##dim);                                                                  \
-    HWY_EXPORT(forces_##dim);                                                                      \
-    HWY_EXPORT(largest_stretch_##dim);                                                             \
-    template <>                                                                                    \
-    void sum_extensions<dim>(const DeformedRows &rows, double *sums, double *squares)              \
-    {                                                                                              \
-      HWY_DYNAMIC_DISPATCH(extensions_##dim)(rows, sums, squares);                                 \
-    }                                                                                              \
-    template <>                                                                                    \
-    void sum_forces<dim>(const DeformedRows &rows,                                                 \
-                         const double       *limits,                                               \
-                         double             *y,                                                    \
-                         unsigned char      *exceeds)                                              \
-    {                                                                                              \
-      HWY_DYNAMIC_DISPATCH(forces_##dim)(rows, limits, y, exceeds);                                \
-    }                                                                                              \
-    template <>                                                                                    \
-    double largest_of_stretches<dim>(const DeformedRows &rows)                                     \
-    {                                                                                              \
-      return HWY_DYNAMIC_DISPATCH(largest_stretch_##dim)(rows);                                    \
+#  define PERIDEAL_DISPATCH(dim)                                                      \
+    HWY_EXPORT(extensions_##dim);                                                     \
+    HWY_EXPORT(forces_##dim);                                                         \
+    HWY_EXPORT(largest_stretch_##dim);                                                \
+    template <>                                                                       \
+    void sum_extensions<dim>(const DeformedRows &rows, double *sums, double *squares) \
+    {                                                                                 \
+      HWY_DYNAMIC_DISPATCH(extensions_##dim)(rows, sums, squares);                    \
+    }                                                                                 \
+    template <>                                                                       \
+    void sum_forces<dim>(const DeformedRows &rows,                                    \
+                         const double       *limits,                                  \
+                         double             *y,                                       \
+                         unsigned char      *exceeds)                                 \
+    {                                                                                 \
+      HWY_DYNAMIC_DISPATCH(forces_##dim)(rows, limits, y, exceeds);                   \
+    }                                                                                 \
+    template <>                                                                       \
+    double largest_of_stretches<dim>(const DeformedRows &rows)                        \
+    {                                                                                 \
+      return HWY_DYNAMIC_DISPATCH(largest_stretch_##dim)(rows);                       \
     }
   PERIDEAL_DISPATCH(1)
   PERIDEAL_DISPATCH(2)

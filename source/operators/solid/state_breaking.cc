@@ -133,7 +133,7 @@ namespace PeriDeal
                                      const Vector                    &u,
                                      const std::vector<unsigned int> &changed) const
   {
-    const unsigned int n_owned = solid.families.nodes().n_owned();
+    const unsigned int     n_owned = solid.families.nodes().n_owned();
     std::set<unsigned int> rows(breakage.nodes_at_work().begin(), breakage.nodes_at_work().end());
     std::vector<typename Families<dim>::Member> family;
     for (const unsigned int i : changed)

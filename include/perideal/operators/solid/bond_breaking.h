@@ -158,10 +158,9 @@ namespace PeriDeal
     std::vector<double>        critical;
     BondState                  state;
     BreakHistory               so_far;
-    std::vector<unsigned int>  loaded_side;    // which in `Traction` is within a horizon of these
-    Overstretched              inside, beyond; // what is to break next, inside by stored bonds
-    std::vector<unsigned int>  losing;         // nodes of these, in ascending order
-    std::unique_ptr<StretchScreen<dim>>         screen; // null: all bonds are looked at
-    std::vector<typename Families<dim>::Member> family; // of the node that is looked at
+    std::vector<unsigned int>  loaded_side;     // which in `Traction` is within a horizon of these
+    Overstretched              inside, beyond;  // what is to break next, inside by stored bonds
+    std::vector<unsigned int>  losing;          // nodes of these, in ascending order
+    std::unique_ptr<StretchScreen<dim>> screen; // null: all bonds are looked at
   };
 } // namespace PeriDeal

@@ -8,16 +8,16 @@
 namespace PeriDeal
 {
   /**
-   * Rows of bonds of a deformed body, one of each owned node, as vectorised loops see them: Y = xi +
-   * u_j - u_i, e = |Y| - x - s x, as in BondKinematics. They take several bonds of a node at once,
-   * those that are left over together with bonds that bear nothing. The order of summation is a
-   * row's own: the same on any number of processes.
+   * Rows of bonds of a deformed body, one of each owned node, as vectorised loops see them; Y and e
+   * are those of BondKinematics. Loops take several bonds of a node at once, those that are left
+   * over together with bonds that bear nothing. The order of summation is a row's own: the same on
+   * any number of processes.
    */
   struct DeformedRows
   {
     /**
-     * What loops want of a node, in one line of the cache: position, c theta/q, displacement, thermal
-     * strain.
+     * What loops want of a node, in one line of the cache: position, c theta/q, displacement,
+     * thermal strain.
      */
     struct alignas(64) Node
     {

@@ -146,9 +146,7 @@ namespace PeriDeal
                      const Vector                    &change) const;
 
     /** The same with full kinematics: the rows of these nodes and of their neighbours. */
-    void sum_again(Vector                          &r,
-                   const Vector                    &u,
-                   const std::vector<unsigned int> &changed) const;
+    void sum_again(Vector &r, const Vector &u, const std::vector<unsigned int> &changed) const;
 
     /** What these owned nodes have of energy(). Collective. */
     double energy_of(const std::vector<unsigned int> &of_nodes, const Vector &u) const;
