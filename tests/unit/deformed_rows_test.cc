@@ -27,11 +27,21 @@ namespace
   }
 
 
+  /** Large ones, none of which breaks bonds but those of nodes in the middle. */
   template <int dim>
-  Vector large_displacements(const Body<dim> &body, const double size)
+  Vector large_displacements(const Body<dim> &body)
   {
-    Vector u =
-      body.values([&](const Point<dim> &p) { return size * bumpy_vector<dim>(p) + 0.4 * p; });
+    const double h        = dim == 1 ? 1. / 24. : dim == 2 ? 1. / 16. : 1. / 8.;
+    const double middle[] = {0.5, 0.375, 0.25};
+    Vector       u        = body.values([&](const Point<dim> &p) {
+      Tensor<1, dim> value    = 0.01 * bumpy_vector<dim>(p) + 0.1 * p;
+      double         farthest = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        farthest = std::max(farthest, std::abs(p[d] - middle[d]));
+      if (farthest < 0.51 * h)
+        value[0] += 0.35 * h;
+      return value;
+    });
     u.update_ghost_values();
     return u;
   }
@@ -91,41 +101,41 @@ namespace
 
 
   /**
-   * As it is, strained, and once bonds have broken: those that are looked at with forces and those
-   * that all are looked at for; and then with forces where bonds are lost found again.
+   * As it is, and once bonds have broken: the same ones, whether those that are stretched have been
+   * looked for with the forces or all are walked through. Forces are mended where bonds are lost.
    */
   template <int dim>
-  void check_rows(const Settings &more, const double size)
+  void check_rows(const Settings &more)
   {
-    const Body<dim> body = brittle_body<dim>(more), other = brittle_body<dim>(more);
-    Vector          u = large_displacements(body, size), r, mended;
+    const Body<dim>            body = brittle_body<dim>(more), other = brittle_body<dim>(more);
+    const BondKinematics<dim> &kinematics = body.states->bonds().kinematics;
+    Vector                     u          = large_displacements(body), r, mended;
     body.op().initialize_vector(r);
     body.op().initialize_vector(mended);
     expect_plain_sums(body, u);
 
-    u.set_ghost_state(false);
     body.op().unbalanced(mended, u, 0.);
     u.update_ghost_values();
-    const BondKinematics<dim> &kinematics = body.states->bonds().kinematics;
-    ASSERT_NE(kinematics.exceeding(u.begin()), nullptr);
     EXPECT_EQ(other.states->bonds().kinematics.exceeding(u.begin()), nullptr);
+    ASSERT_NE(kinematics.exceeding(u.begin()), nullptr);
     double n_suspects = 0.;
     for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
       n_suspects += kinematics.exceeding(u.begin())[i];
     n_suspects = dealii::Utilities::MPI::sum(n_suspects, MPI_COMM_WORLD);
-    EXPECT_LT(n_suspects, 0.7 * body.nodes->n_dofs());
+    EXPECT_GT(n_suspects, 0.);
+    EXPECT_LT(n_suspects, 0.3 * body.nodes->n_global());
     u.set_ghost_state(false);
 
     EXPECT_GT(body.op().break_bonds(u, 0.), 0u);
-    other.op().break_bonds(u, 0.);
-    std::size_t n_known = 0, n_known_of_other = 0;
-    EXPECT_TRUE(body.op().broken_since(n_known) == other.op().broken_since(n_known_of_other));
-    EXPECT_EQ(body.op().break_bonds(u, 0.), 0u);
     body.op().mend_unbalanced(mended, u, 0.);
     body.op().unbalanced(r, u, 0.);
     const double largest = r.linfty_norm();
     mended -= r;
     EXPECT_LT(mended.linfty_norm(), 1e-13 * largest);
+    other.op().break_bonds(u, 0.);
+    std::size_t n_known = 0, n_known_of_other = 0;
+    EXPECT_TRUE(body.op().broken_since(n_known) == other.op().broken_since(n_known_of_other));
+    EXPECT_EQ(body.op().break_bonds(u, 0.), 0u);
     u.update_ghost_values();
     expect_plain_sums(body, u);
   }
@@ -138,12 +148,11 @@ TEST(DeformedRows, sums_bond_by_bond)
                       {"Material/Thermal expansion", "0.01"}};
   for (const Settings &more : {Settings{}, warm})
     {
-      check_rows<1>(more, 0.01);
-      check_rows<2>(more, 0.01);
-      check_rows<3>(more, 0.01);
+      check_rows<1>(more);
+      check_rows<2>(more);
+      check_rows<3>(more);
       check_rows<2>(more + Settings{{"Elasticity/Model", "bond-based"},
                                     {"Elasticity/Plane", "strain"},
-                                    {"Peridynamics/Horizon ratio", "4"}},
-                    0.01);
+                                    {"Peridynamics/Horizon ratio", "4"}});
     }
 }

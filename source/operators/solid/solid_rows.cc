@@ -87,6 +87,14 @@ namespace PeriDeal
     std::string       message;
     std::vector<bool> changing;
     row_of.assign(nodes.n_owned(), no_row);
+    if (!leave_out && families.neighbors().has_unique_sites())
+      {
+        // More than enough, in one go: what is not written to takes no memory.
+        const std::size_t n = families.weights().members().size() * nodes.n_owned();
+        neighbors.reserve(n);
+        moments.reserve(n);
+        springs.reserve(n);
+      }
     if (leave_out)
       {
         lattice_bonds = unit_bonds(families);
@@ -470,11 +478,11 @@ namespace PeriDeal
   template <int dim>
   std::size_t SolidRows<dim>::memory_consumption() const
   {
-    return moments.capacity() * sizeof(moments[0]) + springs.capacity() * sizeof(double) +
+    return moments.size() * sizeof(moments[0]) + springs.size() * sizeof(double) +
            codes.capacity() * sizeof(BondCode::Code) + parts.capacity() * sizeof(parts[0]) +
            starts.capacity() * sizeof(std::size_t) +
-           (neighbors.capacity() + stored_nodes.capacity() + row_of.capacity()) *
-             sizeof(unsigned int) +
+           (packs ? neighbors.capacity() : neighbors.size()) * sizeof(unsigned int) +
+           (stored_nodes.capacity() + row_of.capacity()) * sizeof(unsigned int) +
            (lattice ? lattice->memory_consumption() : 0);
   }
 
