@@ -3,6 +3,7 @@
 
 #include <deal.II/base/exceptions.h>
 
+#include <perideal/base/make_room.h>
 #include <perideal/bonds/bond_state.h>
 
 #include <algorithm>
@@ -14,6 +15,8 @@ namespace PeriDeal
 
   void BondState::resize(const std::size_t n)
   {
+    if (n > marks.size())
+      make_room(marks, n - marks.size());
     marks.resize(n, whole);
   }
 

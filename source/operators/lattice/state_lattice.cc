@@ -54,8 +54,7 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       {
         displacements[d].resize(n, 0.);
-        excesses[d].resize(excess_slots.empty() ? 0 : n, 0.);
-        for (auto *list : {&sums[d], &own_sums[d], &other_sums[d]})
+        for (auto *list : {&sums[d], &own_sums[d]})
           list->resize(list == &sums[d] || !edges.list.empty() ? stretches.n_sums : 0);
       }
     for (unsigned int a = 0; a < dim; ++a)
@@ -66,7 +65,6 @@ namespace PeriDeal
           {
             const StencilKernel *kernel = &complete.springs[complete.pair(a, b)];
             force_terms[a].push_back({kernel, layout.grid(displacements[b].data())});
-            excess_terms[a].push_back({kernel, layout.grid(excesses[b].data())});
           }
       }
   }
@@ -98,25 +96,38 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateLattice<dim>::fill_excess(const double *u) const
-  {
-    for (const ExcessSlot &at : excess_slots)
-      for (unsigned int d = 0; d < dim; ++d)
-        excesses[d][at.slot] = at.factor * u[static_cast<std::size_t>(dim) * at.node + d];
-  }
-
-
-  template <int dim>
-  void StateLattice<dim>::add_up_at_edges(const std::size_t group) const
+  void StateLattice<dim>::add_up_at_edges(const std::size_t                     group,
+                                          std::array<std::vector<double>, dim> &to) const
   {
     for (std::size_t c = group == 0 ? 0 : stretches.groups[group - 1].clusters;
          c < stretches.groups[group].clusters;
          ++c)
       for (unsigned int a = 0; a < dim; ++a)
-        {
-          stretches.apply_to_cluster(force_terms[a].data() + 1, dim, c, own_sums[a].data());
-          stretches.apply_to_cluster(excess_terms[a].data(), dim, c, other_sums[a].data());
-        }
+        stretches.apply_to_cluster(force_terms[a].data() + 1, dim, c, to[a].data());
+  }
+
+
+  /** The sums of V e u take the place of those of V u in the grid, which is filled anew before. */
+  template <int dim>
+  void StateLattice<dim>::add_excess(double *y, const double *u) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        std::fill(displacements[d].begin(), displacements[d].end(), 0.);
+        for (const ExcessSlot &at : excess_slots)
+          displacements[d][at.slot] = at.factor * u[static_cast<std::size_t>(dim) * at.node + d];
+      }
+    std::size_t s = 0;
+    for (std::size_t group = 0; group < stretches.groups.size(); ++group)
+      {
+        add_up_at_edges(group, own_sums);
+        for (; s < stretches.groups[group].stretches; ++s)
+          if (const Stretch &stretch = stretches.list[s]; stretch.edge != none)
+            for (std::uint32_t k = 0; k < stretch.n; ++k)
+              for (unsigned int a = 0; a < dim; ++a)
+                y[static_cast<std::size_t>(dim) * (stretch.node + k) + a] -=
+                  families.nodes().volume(stretch.node + k) * own_sums[a][stretch.at + k];
+      }
   }
 
 
@@ -179,8 +190,6 @@ namespace PeriDeal
         for (unsigned int a = 0; a < dim; ++a)
           {
             double force = sums[a][at] + tension * edge.moment[a] + edge.excess * own_sums[a][at];
-            if (!excess_slots.empty())
-              force += other_sums[a][at];
             for (unsigned int b = 0; b < dim; ++b)
               force -= edge.block[complete.pair(a, b)] * own[b];
             y[dim * node + a] = -families.nodes().volume(node) * force;
@@ -192,9 +201,8 @@ namespace PeriDeal
   template <int dim>
   void StateLattice<dim>::forces(double *y, const double *u, const double *tau) const
   {
-    const bool with_tau = dim > 1 && tau != nullptr;
-    fill_excess(u);
-    std::size_t s = 0;
+    const bool  with_tau = dim > 1 && tau != nullptr;
+    std::size_t s        = 0;
     for (std::size_t group = 0; group < stretches.groups.size(); ++group)
       {
         if (with_tau)
@@ -207,13 +215,15 @@ namespace PeriDeal
                           group,
                           sums[a].data());
         if (!excess_slots.empty())
-          add_up_at_edges(group);
+          add_up_at_edges(group, own_sums);
         for (; s < stretches.groups[group].stretches; ++s)
           if (stretches.list[s].edge == none)
             finish(stretches.list[s], y);
           else
             finish_edge(stretches.list[s], u, tau, y);
       }
+    if (!excess_slots.empty())
+      add_excess(y, u);
   }
 
 
@@ -231,8 +241,7 @@ namespace PeriDeal
       layout.memory_consumption() + edges.memory_consumption() + stretches.memory_consumption() +
       excess_slots.capacity() * sizeof(ExcessSlot) + tensions.capacity() * sizeof(double);
     for (unsigned int d = 0; d < dim; ++d)
-      for (const auto *list :
-           {&displacements[d], &excesses[d], &sums[d], &own_sums[d], &other_sums[d]})
+      for (const auto *list : {&displacements[d], &sums[d], &own_sums[d]})
         bytes += list->capacity() * sizeof(double);
     return bytes;
   }

@@ -40,8 +40,8 @@ namespace PeriDeal
 
     /**
      * -F of the computed nodes. Owned and ghost values; without tau (null) only what the extensions
-     * of bonds do. With tau the displacements u have to be those of the last call of
-     * dilatation_forces().
+     * of bonds do. With tau the displacements u have to be those of dilatation_forces(), called
+     * just before.
      */
     void forces(double *y, const double *u, const double *tau) const;
 
@@ -68,8 +68,8 @@ namespace PeriDeal
     void set_terms();
     template <int n_components>
     void fill(std::vector<double> *to, const std::size_t group, const double *values) const;
-    void fill_excess(const double *u) const;
-    void add_up_at_edges(const std::size_t group) const;
+    void add_up_at_edges(const std::size_t group, std::array<std::vector<double>, dim> &to) const;
+    void add_excess(double *y, const double *u) const;
     void finish(const Stretch &stretch, double *y) const;
     void finish_edge(const Stretch &stretch, const double *u, const double *tau, double *y) const;
 
@@ -80,10 +80,10 @@ namespace PeriDeal
     const LatticeStretches<dim> stretches;
     std::vector<ExcessSlot>     excess_slots;
 
-    mutable std::array<std::vector<double>, dim>      displacements, excesses; // padded: V u, V e u
-    mutable std::vector<double>                       tensions;                // padded: V tau
-    mutable std::array<std::vector<double>, dim>      sums, own_sums, other_sums; // of a group
+    mutable std::array<std::vector<double>, dim>      displacements;  // padded: V u
+    mutable std::vector<double>                       tensions;       // padded: V tau
+    mutable std::array<std::vector<double>, dim>      sums, own_sums; // of a group
     std::vector<StencilKernel::Term>                  dilatation_terms;
-    std::array<std::vector<StencilKernel::Term>, dim> force_terms, excess_terms; // tau first
+    std::array<std::vector<StencilKernel::Term>, dim> force_terms; // tau first
   };
 } // namespace PeriDeal

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "crossing_sums.h"
 #include "stretch_fault.h"
@@ -35,7 +36,25 @@ namespace PeriDeal
     find_critical_stretches();
     if (bonds.rows.has_lattice())
       screen = std::make_unique<StretchScreen<dim>>(bonds.families, critical);
+    if (bonds.kinematics.is_full())
+      watch_limits();
     loaded_side = loads.sides_nearby(bonds.families);
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::watch_limits()
+  {
+    std::vector<double> limits(bonds.families.nodes().n_owned());
+    for (unsigned int i = 0; i < limits.size(); ++i)
+      {
+        limits[i] = critical[i];
+        bonds.rows.for_each_stored(i, [&](const auto &bond) {
+          limits[i] = std::min(limits[i], critical[bond.neighbor]);
+        });
+        limits[i] *= 1. - 1e-9; // what is found by other operations differs by round-off
+      }
+    bonds.kinematics.watch(std::move(limits));
   }
 
 
@@ -126,8 +145,10 @@ namespace PeriDeal
           inside.emplace_back(bond.number, found / limit);
       });
     };
+    const unsigned char *const exceeds = bonds.kinematics.exceeding(u);
     for (unsigned int i = 0; !screen && i < bonds.families.nodes().n_owned(); ++i)
-      look_at_row(i);
+      if (exceeds == nullptr || exceeds[i] != 0)
+        look_at_row(i);
     const double least_strain = bonds.thermal.least();
     for (const unsigned int i : screen ? screen->suspects(u, least_strain) : losing)
       {
@@ -135,7 +156,7 @@ namespace PeriDeal
           {
             bool any = false;
             if (screen->may_reach(i, u, least_strain))
-              rows.for_each_to_store(i, family, [&](const auto &bond) {
+              rows.for_each(i, [&](const auto &bond) {
                 const auto [found, limit] = stretch_and_limit(u, i, bond);
                 any                       = any || found > limit;
               });

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace PeriDeal
 {
@@ -30,8 +31,65 @@ namespace PeriDeal
     if (!full)
       return;
     across.resize(rows.n_stored(), 0.);
+    lengths.reserve(rows.n_stored());
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
       rows.for_each_stored(i, [&](const Bond &bond) { lengths.push_back(bond.moment.norm()); });
+    nodes.resize(families.nodes().n_local());
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      for (unsigned int d = 0; d < dim; ++d)
+        nodes[i].numbers[d] = families.nodes().position(i)[d];
+  }
+
+
+  template <int dim>
+  void BondKinematics<dim>::take(const double *u, const Vector *tau) const
+  {
+    using Node = DeformedRows::Node;
+    seen       = false;
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      {
+        double *const to = nodes[i].numbers;
+        for (unsigned int d = 0; d < dim; ++d)
+          to[Node::displacement + d] = u[dim * i + d];
+        to[Node::strain] = thermal[i];
+        if (tau != nullptr)
+          to[Node::tau] = tau->local_element(i);
+      }
+  }
+
+
+  template <int dim>
+  DeformedRows BondKinematics<dim>::all_rows() const
+  {
+    DeformedRows all;
+    rows.show(all);
+    all.nodes    = nodes.data();
+    all.lengths  = lengths.data();
+    all.strained = thermal.any();
+    return all;
+  }
+
+
+  template <int dim>
+  void BondKinematics<dim>::watch(std::vector<double> of_nodes)
+  {
+    Assert(full, ExcInternalError());
+    limits = std::move(of_nodes);
+    exceeds.resize(limits.size());
+    seen = false;
+  }
+
+
+  template <int dim>
+  const unsigned char *BondKinematics<dim>::exceeding(const double *u) const
+  {
+    if (!seen)
+      return nullptr;
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      for (unsigned int d = 0; d < dim; ++d)
+        if (nodes[i].numbers[DeformedRows::Node::displacement + d] != u[dim * i + d])
+          return nullptr;
+    return exceeds.data();
   }
 
 
@@ -71,6 +129,14 @@ namespace PeriDeal
                                           const double        *u,
                                           const NodeLaws<dim> &laws) const
   {
+    if (full)
+      {
+        take(u, nullptr);
+        sum_extensions<dim>(all_rows(), tau, nullptr);
+        for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+          tau[i] = laws.tension(i, tau[i]);
+        return;
+      }
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
       {
         double sum = 0.;
@@ -83,18 +149,52 @@ namespace PeriDeal
   template <int dim>
   void BondKinematics<dim>::find_forces(Vector &y, const double *u, const Vector &tau) const
   {
-    const double *const t = tau.begin();
-    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+    take(u, &tau);
+    sum_forces<dim>(all_rows(),
+                    limits.empty() ? nullptr : limits.data(),
+                    y.begin(),
+                    exceeds.data());
+    seen = !limits.empty();
+  }
+
+
+  template <int dim>
+  void BondKinematics<dim>::find_forces_of(const std::vector<unsigned int> &of_nodes,
+                                           double                          *y,
+                                           const double                    *u,
+                                           const Vector                    &tau) const
+  {
+    take(u, &tau);
+    DeformedRows rows_of_nodes = all_rows();
+    for (const unsigned int i : of_nodes)
       {
-        Tensor<1, dim> force;
-        rows.for_each_stored(i, [&](const Bond &bond) {
-          const Tensor<1, dim> along = deformed_bond(u, i, bond.neighbor);
-          const double size = bond.spring * extension_moment(u, i, bond) + t[i] + t[bond.neighbor];
-          force += size * length(bond) / along.norm() * along;
-        });
-        for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * i + d) = -force[d];
+        rows_of_nodes.begin = i;
+        rows_of_nodes.end   = i + 1;
+        sum_forces<dim>(rows_of_nodes, nullptr, y, nullptr);
       }
+  }
+
+
+  template <int dim>
+  double BondKinematics<dim>::energy_of_extensions(const double *u) const
+  {
+    double            sum = 0.;
+    const Nodes<dim> &own = families.nodes();
+    if (full)
+      {
+        std::vector<double> sums(own.n_owned()), squares(own.n_owned());
+        take(u, nullptr);
+        sum_extensions<dim>(all_rows(), sums.data(), squares.data());
+        for (const double square : squares)
+          sum += 0.25 * square;
+        return sum;
+      }
+    for (unsigned int i = 0; i < own.n_owned(); ++i)
+      rows.for_each(i, [&](const Bond &bond) {
+        const double product = extension_moment(u, i, bond);
+        sum += 0.25 * bond.spring * product * product;
+      });
+    return sum;
   }
 
 
@@ -134,18 +234,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  double BondKinematics<dim>::largest_stretch(const double *u, const BondState &state) const
+  double BondKinematics<dim>::largest_stretch(const double *u) const
   {
-    double largest = 0.;
-    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-      rows.for_each_stored(i, [&](const Bond &bond) {
-        if (state.is_whole(bond.number))
-          largest = std::max(largest,
-                             std::abs(deformed_bond(u, i, bond.neighbor).norm() /
-                                        families.neighbors().bond_vector(i, bond.neighbor).norm() -
-                                      1.));
-      });
-    return Utilities::MPI::max(largest, families.nodes().communicator());
+    take(u, nullptr);
+    return Utilities::MPI::max(largest_of_stretches<dim>(all_rows()),
+                               families.nodes().communicator());
   }
 
 
@@ -155,6 +248,14 @@ namespace PeriDeal
     rows.release(number);
     if (full)
       lengths[number] = across[number] = 0.;
+  }
+
+
+  template <int dim>
+  std::size_t BondKinematics<dim>::memory_consumption() const
+  {
+    return (lengths.capacity() + across.capacity() + limits.capacity()) * sizeof(double) +
+           nodes.capacity() * sizeof(nodes[0]) + exceeds.capacity();
   }
 
 

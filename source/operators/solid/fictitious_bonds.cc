@@ -50,21 +50,33 @@ namespace PeriDeal
   {
     const double *const u = x.begin();
     fictitious.begin_forces();
-    for (const unsigned int i : list)
+    for (std::size_t place = 0; place < list.size(); ++place)
       {
+        const unsigned int i = list[place];
+        const double tension = tau != nullptr ? tau[i] : 0., own = packs ? laws->stiffness(i) : 0.;
+        const double volume = families.nodes().volume(i);
         Tensor<1, dim> force;
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          {
-            const double *const   v       = fictitious.value(image_of_bond[k]);
-            const Tensor<1, dim> &p       = moments[k];
-            double                product = 0.;
-            for (unsigned int d = 0; d < dim; ++d)
-              product += p[d] * (v[d] - u[dim * i + d]);
-            const double         size    = springs[k] * product + (tau != nullptr ? tau[i] : 0.);
-            const Tensor<1, dim> of_bond = size * p;
-            force += of_bond;
-            fictitious.pull(image_of_bond[k], of_bond);
-          }
+        const auto     product = [&](const Tensor<1, dim> &p, const std::size_t k) {
+          const double *const v   = fictitious.value(image_of_bond[k]);
+          double              sum = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            sum += p[d] * (v[d] - u[dim * i + d]);
+          return sum;
+        };
+        const auto add = [&](const std::size_t k, const Tensor<1, dim> &of_bond) {
+          force += of_bond;
+          fictitious.pull(image_of_bond[k], of_bond);
+        };
+        for (std::size_t k = starts[place]; k < starts[place + 1]; ++k)
+          if (!packs)
+            add(k, (springs[k] * product(moments[k], k) + tension) * moments[k]);
+          else if (codes[k] != BondCode::gone)
+            {
+              // Of spring and W x e volumes drop out.
+              const UnitBond<dim> &unit = units[codes[k]];
+              const double         size = own / unit.weight * product(unit.moment, k) + tension;
+              add(k, size * volume * fictitious[image_of_bond[k]].volume * unit.moment);
+            }
         for (unsigned int d = 0; d < dim; ++d)
           y.local_element(dim * i + d) -= force[d];
       }
@@ -73,9 +85,31 @@ namespace PeriDeal
 
 
   template <int dim>
+  typename FictitiousBonds<dim>::Bond FictitiousBonds<dim>::bond_at(const std::size_t  number,
+                                                                    const unsigned int node) const
+  {
+    const unsigned int image = image_of_bond[number];
+    const bool         whole = state.is_whole(number);
+    if (!packs)
+      return {number, node, image, moments[number], springs[number], whole};
+    if (codes[number] == BondCode::gone)
+      return {number, node, image, Tensor<1, dim>(), 0., whole};
+    const UnitBond<dim> &unit   = units[codes[number]];
+    const double         w      = families.nodes().volume(node) * fictitious[image].volume;
+    const double         square = w * unit.weight;
+    return {number,
+            node,
+            image,
+            w * unit.moment,
+            laws != nullptr ? laws->stiffness(node) / square : square,
+            whole};
+  }
+
+
+  template <int dim>
   void FictitiousBonds<dim>::add_tensions(Vector              &tau,
                                           const Vector        &u,
-                                          const NodeLaws<dim> &laws,
+                                          const NodeLaws<dim> &of_nodes,
                                           const bool           strained) const
   {
     fictitious.find(u.begin());
@@ -86,7 +120,7 @@ namespace PeriDeal
           sum += strained ? extension_moment(bond, u.begin()) :
                             bond.moment * change(bond, u.begin());
         });
-        tau.local_element(i) += laws.tension(i, sum);
+        tau.local_element(i) += of_nodes.tension(i, sum);
       }
   }
 
@@ -316,6 +350,11 @@ namespace PeriDeal
   template <int dim>
   void FictitiousBonds<dim>::release(const std::size_t number)
   {
+    if (packs)
+      {
+        codes[number] = BondCode::gone;
+        return;
+      }
     springs[number] = 0.;
     moments[number] = Tensor<1, dim>();
     if (!lengths.empty())
@@ -328,8 +367,14 @@ namespace PeriDeal
                                                               const NodeKeys   &keys,
                                                               const std::size_t n_first)
   {
-    const Archive::Part part(archive, "fictitious nodes");
-    return state.exchange(archive, BondState::by_starts(starts), keys, n_first);
+    const Archive::Part        part(archive, "fictitious nodes");
+    const BondState::Numbering numbering{
+      [this](const std::size_t number) -> std::size_t {
+        return list[std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1];
+      },
+      [this](const std::size_t node) { return starts[place_of(node)]; },
+      [this]() { return image_of_bond.size(); }};
+    return state.exchange(archive, numbering, keys, n_first);
   }
 
 
@@ -338,7 +383,7 @@ namespace PeriDeal
                                              const std::vector<unsigned int> &lost,
                                              const double                     t)
   {
-    if (starts.empty() || starts[node] == starts[node + 1])
+    if (place_of(node) == list.size())
       return;
     // Images of other nodes that are gone: what is continued from them is, too.
     std::vector<unsigned int> lost_images;
@@ -369,9 +414,12 @@ namespace PeriDeal
   std::size_t FictitiousBonds<dim>::memory_consumption() const
   {
     return state.memory_consumption() + fictitious.memory_consumption() +
-           image_of_bond.capacity() *
-             (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
-           (lengths.capacity() + across.capacity() + strains.capacity()) * sizeof(double) +
+           (image_of_bond.capacity() + list.capacity()) * sizeof(unsigned int) +
+           moments.capacity() * sizeof(Tensor<1, dim>) + codes.capacity() * sizeof(BondCode::Code) +
+           units.capacity() * sizeof(UnitBond<dim>) +
+           (springs.capacity() + lengths.capacity() + across.capacity() + strains.capacity() +
+            squares.capacity()) *
+             sizeof(double) +
            starts.capacity() * sizeof(std::size_t);
   }
 

@@ -16,7 +16,8 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::array<BeyondSide, 2 * dim> &beyond)
+                                        const std::array<BeyondSide, 2 * dim> &beyond,
+                                        const bool                             may_pack)
     : families(families)
     , fictitious(families.nodes())
   {
@@ -26,6 +27,9 @@ namespace PeriDeal
     for (const FamilyMember<dim> &member : families.weights().members())
       for (unsigned int d = 0; d < dim; ++d)
         reach = std::max(reach, member.offset[d]);
+    if (may_pack)
+      units = unit_bonds(families);
+    packs = !units.empty() && units.size() < BondCode::gone;
     find_bonds([&](const unsigned int i, Search &search) {
       if (extension.distance(nodes.lattice()->index(nodes.position(i))) <= reach)
         find_bonds_of(i, extension, search);
@@ -58,15 +62,19 @@ namespace PeriDeal
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
       {
         find(i, search);
-        if (image_of_bond.size() > starts.back())
-          list.push_back(i);
+        if (image_of_bond.size() == starts.back())
+          continue;
+        list.push_back(i);
         starts.push_back(image_of_bond.size());
       }
     if (!search.parted.empty())
       state.resize(image_of_bond.size());
     for (const std::size_t number : search.parted)
       state.mark(number, BondState::parted, 0.);
-    image_of_bond.shrink_to_fit();
+    for (auto *numbers : {&image_of_bond, &list})
+      numbers->shrink_to_fit();
+    starts.shrink_to_fit();
+    codes.shrink_to_fit();
     moments.shrink_to_fit();
     springs.shrink_to_fit();
     fictitious.make_room();
@@ -78,12 +86,18 @@ namespace PeriDeal
                                       const Tensor<1, dim> &xi,
                                       const double          weight,
                                       const bool            cut,
+                                      const unsigned int    member,
                                       Search               &search)
   {
     const double w = cut ? 0. : weight;
     if (cut)
       search.parted.push_back(image_of_bond.size());
     image_of_bond.push_back(image);
+    if (packs)
+      {
+        codes.push_back(static_cast<BondCode::Code>(cut ? BondCode::gone : member));
+        return;
+      }
     moments.push_back(w * xi);
     springs.push_back(w * xi.norm_square());
   }
@@ -137,7 +151,7 @@ namespace PeriDeal
             number_of[g]        = fictitious.add(fields, image.terms);
           }
         const double weight = families.weights().of_length(xi.norm());
-        add_bond(number_of[g], xi, nodes.volume(i) * image.volume * weight, cut, search);
+        add_bond(number_of[g], xi, nodes.volume(i) * image.volume * weight, cut, 0, search);
       }
   }
 
@@ -152,9 +166,11 @@ namespace PeriDeal
     const Index         center     = lattice.index(nodes.position(i));
     const bool          near_crack = families.near_crack(i);
     Site                site;
-    for (const FamilyMember<dim> &member : families.weights().members())
+    const auto         &members = families.weights().members();
+    for (unsigned int m = 0; m < members.size(); ++m)
       {
-        const Index index = center + member.offset;
+        const FamilyMember<dim> &member = members[m];
+        const Index              index  = center + member.offset;
         if (extension.is_inside(index) || !extension.find(index, site))
           continue;
         const unsigned int real   = families.neighbors().node_at(index);
@@ -177,6 +193,7 @@ namespace PeriDeal
                  xi,
                  nodes.volume(i) * volume * member.weight,
                  cut,
+                 m,
                  search);
       }
   }
@@ -299,11 +316,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FictitiousBonds<dim>::renew_springs(const unsigned int node, const NodeLaws<dim> &laws)
+  void FictitiousBonds<dim>::renew_springs(const unsigned int node, const NodeLaws<dim> &of_nodes)
   {
     for_each_of(node, [&](const Bond &bond) {
       if (bond.whole)
-        springs[bond.number] = laws.stiffness(node) / squares[bond.number];
+        springs[bond.number] = of_nodes.stiffness(node) / squares[bond.number];
     });
   }
 
@@ -318,13 +335,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &laws, const bool full)
+  void FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &of_nodes, const bool full)
   {
+    laws = &of_nodes;
+    if (packs)
+      return;
     if (families.cracks().history().changes_ever())
       squares = springs;
-    for (const unsigned int i : list)
-      for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-        springs[k] = state.is_whole(k) ? laws.stiffness(i) / springs[k] : 0.;
+    for_each([&](const Bond &bond) {
+      springs[bond.number] = bond.whole ? laws->stiffness(bond.node) / bond.spring : 0.;
+    });
     if (!full)
       return;
     across.resize(springs.size(), 0.);
@@ -363,7 +383,8 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                 \
   template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                           \
-                                                 const std::array<BeyondSide, 2 * dim> &);        \
+                                                 const std::array<BeyondSide, 2 * dim> &,         \
+                                                 const bool);                                     \
   template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                           \
                                                  const std::vector<BoundaryImage<dim>> &);        \
   template void   FictitiousBonds<dim>::part(const unsigned int, const double);                   \

@@ -44,7 +44,10 @@ namespace PeriDeal
             return side == BeyondSide::nothing;
           }))
         return nullptr;
-      auto beyond = std::make_unique<FictitiousBonds<dim>>(families, sides);
+      auto beyond = std::make_unique<FictitiousBonds<dim>>(
+        families,
+        sides,
+        !body.elasticity.has_full_kinematics() && !families.cracks().history().changes_ever());
       beyond->add_weights(weighted);
       // The lattice knows what is complete to the last bit.
       const double complete = rows.complete_weighted();

@@ -3,6 +3,7 @@
 
 // Which bonds are stored, and which the lattice knows.
 
+#include <perideal/base/make_room.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/base/user_error.h>
@@ -41,6 +42,24 @@ namespace PeriDeal
     }
 
 
+    /** p . (u_j - u_i) */
+    template <int dim>
+    double product(const Tensor<1, dim> &p,
+                   const double         *u,
+                   const unsigned int    i,
+                   const unsigned int    j)
+    {
+      const double *const a = u + static_cast<std::size_t>(dim) * i, *const b =
+                                                                       u + static_cast<std::size_t>(
+                                                                             dim) *
+                                                                             j;
+      double sum = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        sum += p[d] * (b[d] - a[d]);
+      return sum;
+    }
+
+
     template <int dim>
     bool may_leave_out_bonds(const Families<dim> &families, const BodyParameters<dim> &body)
     {
@@ -68,10 +87,19 @@ namespace PeriDeal
     std::string       message;
     std::vector<bool> changing;
     row_of.assign(nodes.n_owned(), no_row);
+    if (!leave_out && families.neighbors().has_unique_sites())
+      {
+        // More than enough, in one go: what is not written to takes no memory.
+        const std::size_t n = families.weights().members().size() * nodes.n_owned();
+        neighbors.reserve(n);
+        moments.reserve(n);
+        springs.reserve(n);
+      }
     if (leave_out)
       {
-        list_lattice_bonds();
-        changing = find_changing(body);
+        lattice_bonds = unit_bonds(families);
+        packs         = lattice_bonds.size() < BondCode::gone;
+        changing      = find_changing(body);
       }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -128,22 +156,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidRows<dim>::list_lattice_bonds()
-  {
-    const Nodes<dim> &nodes = families.nodes();
-    for (const FamilyMember<dim> &member : families.weights().members())
-      {
-        LatticeBond bond;
-        bond.offset = member.offset;
-        for (unsigned int d = 0; d < dim; ++d)
-          bond.moment[d] = member.weight * (member.offset[d] * nodes.lattice()->spacing[d]);
-        bond.weight = member.weight * member.r * member.r;
-        lattice_bonds.push_back(bond);
-      }
-  }
-
-
-  template <int dim>
   bool SolidRows<dim>::has_complete_family(const unsigned int i) const
   {
     const Nodes<dim> &nodes  = families.nodes();
@@ -174,20 +186,57 @@ namespace PeriDeal
   template <int dim>
   void SolidRows<dim>::add_row(const unsigned int i, const Family &family)
   {
-    for (const auto &bond : family)
-      {
-        const double weight = bond.kept * bond.weight;
-        if (weight == 0.)
-          continue;
-        AssertIndexRange(bond.neighbor, families.nodes().n_local()); // no fictitious nodes
-        const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
-        neighbors.push_back(bond.neighbor);
-        moments.push_back(weight * xi);
-        springs.push_back(weight * xi.norm_square());
-      }
+    if (packs)
+      pack_row(i, family);
+    else
+      for (const auto &bond : family)
+        {
+          const double weight = bond.kept * bond.weight;
+          if (weight == 0.)
+            continue;
+          AssertIndexRange(bond.neighbor, families.nodes().n_local()); // no fictitious nodes
+          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+          neighbors.push_back(bond.neighbor);
+          moments.push_back(weight * xi);
+          springs.push_back(weight * xi.norm_square());
+        }
     row_of[i] = static_cast<std::uint32_t>(stored_nodes.size());
     stored_nodes.push_back(i);
     starts.push_back(neighbors.size());
+  }
+
+
+  template <int dim>
+  void SolidRows<dim>::pack_row(const unsigned int i, const Family &family)
+  {
+    make_room(neighbors, family.size());
+    make_room(codes, family.size());
+    const auto site = families.nodes().lattice()->index(families.nodes().position(i));
+    auto       bond = family.begin();
+    for (unsigned int m = 0; m < lattice_bonds.size() && bond != family.end(); ++m)
+      if (families.neighbors().node_at(site + lattice_bonds[m].offset) == bond->neighbor)
+        {
+          if (bond->kept * bond->weight != 0.)
+            {
+              if (bond->kept < 1.)
+                parts.emplace_back(neighbors.size(), bond->kept);
+              neighbors.push_back(bond->neighbor);
+              codes.push_back(
+                static_cast<BondCode::Code>(m | (bond->kept < 1. ? BondCode::in_part : 0)));
+            }
+          ++bond;
+        }
+    Assert(bond == family.end(), ExcInternalError());
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  void SolidRows<dim>::for_each_packed(const unsigned int i, const Visit &visit) const
+  {
+    for (std::size_t k = begin_of(i); k < end_of(i); ++k)
+      if (codes[k] != BondCode::gone)
+        visit(k, neighbors[k], lattice_bonds[BondCode::number(codes[k])]);
   }
 
 
@@ -198,7 +247,7 @@ namespace PeriDeal
     Family family;
     families.members_of(i, family);
     add_row(i, family);
-    for (std::size_t k = begin_of(i); k < end_of(i); ++k)
+    for (std::size_t k = begin_of(i); !packs && k < end_of(i); ++k)
       springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / springs[k]; // W x^2
   }
 
@@ -257,6 +306,8 @@ namespace PeriDeal
   template <int dim>
   void SolidRows<dim>::renew_springs(const unsigned int i, const BondState &state)
   {
+    if (packs) // they follow from q
+      return;
     Family family;
     families.members_of(i, family);
     std::size_t k = begin_of(i);
@@ -305,7 +356,7 @@ namespace PeriDeal
     if (body.peridynamics.corrects_elastic_bonds())
       correct_surface(body);
     for (const unsigned int i : stored_nodes)
-      for (std::size_t k = begin_of(i); k < end_of(i); ++k)
+      for (std::size_t k = begin_of(i); !packs && k < end_of(i); ++k)
         springs[k] = (laws.stiffness(i) + laws.stiffness(neighbors[k])) / springs[k]; // W x^2
     if (!lattice_bonds.empty())
       make_lattice();
@@ -327,9 +378,6 @@ namespace PeriDeal
         if (laws.volumetric && i < families.nodes().n_owned())
           coefficients.dilatations.push_back(laws[i].volumetric * laws[i].dilatation / (own * own));
       }
-    // Where cracks grow, q becomes smaller and this no larger than it is.
-    least_stiffness =
-      *std::min_element(coefficients.stiffnesses.begin(), coefficients.stiffnesses.end());
     std::vector<bool> computed;
     for (const std::uint32_t row : row_of)
       computed.push_back(row == no_row);
@@ -349,20 +397,17 @@ namespace PeriDeal
   {
     if (lattice)
       lattice->dilatation_forces(tau, u);
-    for (std::size_t row = 0; row < stored_nodes.size(); ++row)
+    for (const unsigned int i : stored_nodes)
       {
-        const unsigned int i = stored_nodes[row];
-        Tensor<1, dim>     own;
-        for (unsigned int d = 0; d < dim; ++d)
-          own[d] = u[dim * i + d];
         double sum = 0.;
-        for (std::size_t k = starts[row]; k < starts[row + 1]; ++k)
-          {
-            const double *const   v = u + dim * neighbors[k];
-            const Tensor<1, dim> &p = moments[k];
-            for (unsigned int d = 0; d < dim; ++d)
-              sum += p[d] * (v[d] - own[d]);
-          }
+        if (packs)
+          for_each_packed(i,
+                          [&](const std::size_t k, const unsigned int j, const LatticeBond &bond) {
+                            sum += volumes_of(i, k) * product(bond.moment, u, i, j);
+                          });
+        else
+          for (std::size_t k = begin_of(i); k < end_of(i); ++k)
+            sum += product(moments[k], u, i, neighbors[k]);
         tau[i] = laws.tension(i, sum);
       }
   }
@@ -373,63 +418,59 @@ namespace PeriDeal
   {
     if (lattice)
       lattice->forces(y, u, tau);
-    const auto sum_row = [&](const std::size_t row, const auto &tension) {
-      const unsigned int i = stored_nodes[row];
-      Tensor<1, dim>     own, force;
-      for (unsigned int d = 0; d < dim; ++d)
-        own[d] = u[dim * i + d];
-      for (std::size_t k = starts[row]; k < starts[row + 1]; ++k)
-        {
-          const double *const   v       = u + dim * neighbors[k];
-          const Tensor<1, dim> &p       = moments[k];
-          double                product = 0.;
-          for (unsigned int d = 0; d < dim; ++d)
-            product += p[d] * (v[d] - own[d]);
-          const double size = tension(springs[k] * product, neighbors[k]);
-          for (unsigned int d = 0; d < dim; ++d)
-            force[d] += size * p[d];
-        }
-      for (unsigned int d = 0; d < dim; ++d)
-        y[dim * i + d] = -force[d];
+    const auto tension = [tau](const unsigned int i, const unsigned int j) {
+      return tau != nullptr ? tau[i] + tau[j] : 0.;
     };
-    for (std::size_t row = 0; row < stored_nodes.size(); ++row)
-      if (tau != nullptr)
-        sum_row(row,
-                [tau, own = tau[stored_nodes[row]]](const double of_spring, const unsigned int j) {
-                  return of_spring + own + tau[j];
-                });
-      else
-        sum_row(row, [](const double of_spring, const unsigned int) { return of_spring; });
+    for (const unsigned int i : stored_nodes)
+      {
+        Tensor<1, dim> force;
+        if (packs) // of spring and W x e volumes drop out
+          for_each_packed(i,
+                          [&, own = laws.stiffness(i)](const std::size_t  k,
+                                                       const unsigned int j,
+                                                       const LatticeBond &bond) {
+                            const double stiffness = (own + laws.stiffness(j)) / bond.weight;
+                            const double size =
+                              stiffness * product(bond.moment, u, i, j) + tension(i, j);
+                            force += (size * volumes_of(i, k)) * bond.moment;
+                          });
+        else
+          for (std::size_t k = begin_of(i); k < end_of(i); ++k)
+            {
+              const unsigned int    j = neighbors[k];
+              const Tensor<1, dim> &p = moments[k];
+              force += (springs[k] * product(p, u, i, j) + tension(i, j)) * p;
+            }
+        for (unsigned int d = 0; d < dim; ++d)
+          y[static_cast<std::size_t>(dim) * i + d] = -force[d];
+      }
   }
 
 
   template <int dim>
   bool SolidRows<dim>::may_exceed(const unsigned int i, const double *u, const double stretch) const
   {
-    const double limit =
-      (1. - 1e-9) * 2. * least_stiffness * stretch; // spring = (b/q + b/q)/(W x^2)
-    if (!(limit > 0.))
+    if (!packs || !(stretch > 0.))
       return true;
-    const double *const own = u + static_cast<std::size_t>(dim) * i;
-    for (std::size_t k = begin_of(i); k < end_of(i); ++k)
-      {
-        const double *const   v       = u + static_cast<std::size_t>(dim) * neighbors[k];
-        const Tensor<1, dim> &p       = moments[k];
-        double                product = 0.;
-        for (unsigned int d = 0; d < dim; ++d)
-          product += p[d] * (v[d] - own[d]);
-        if (springs[k] * product > limit)
-          return true;
-      }
-    return false;
+    const double limit = (1. - 1e-9) * stretch;
+    bool         any   = false;
+    for_each_packed(i, [&](const std::size_t, const unsigned int j, const LatticeBond &bond) {
+      any = any || product(bond.moment, u, i, j) > limit * bond.weight;
+    });
+    return any;
   }
 
 
   template <int dim>
   void SolidRows<dim>::release(const std::size_t number)
   {
-    springs[number] = 0.;
-    moments[number] = Tensor<1, dim>();
+    if (packs)
+      codes[number] = BondCode::gone;
+    else
+      {
+        springs[number] = 0.;
+        moments[number] = Tensor<1, dim>();
+      }
     n_whole -= 0.5;
   }
 
@@ -437,9 +478,11 @@ namespace PeriDeal
   template <int dim>
   std::size_t SolidRows<dim>::memory_consumption() const
   {
-    return neighbors.size() * (sizeof(unsigned int) + sizeof(Tensor<1, dim>) + sizeof(double)) +
-           starts.size() * sizeof(std::size_t) +
-           (stored_nodes.size() + row_of.size()) * sizeof(unsigned int) +
+    return moments.size() * sizeof(moments[0]) + springs.size() * sizeof(double) +
+           codes.capacity() * sizeof(BondCode::Code) + parts.capacity() * sizeof(parts[0]) +
+           starts.capacity() * sizeof(std::size_t) +
+           (packs ? neighbors.capacity() : neighbors.size()) * sizeof(unsigned int) +
+           (stored_nodes.capacity() + row_of.capacity()) * sizeof(unsigned int) +
            (lattice ? lattice->memory_consumption() : 0);
   }
 

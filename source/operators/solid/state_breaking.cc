@@ -10,6 +10,7 @@
 #include <perideal/operators/solid/state_operator.h>
 
 #include <algorithm>
+#include <set>
 
 namespace PeriDeal
 {
@@ -47,8 +48,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::renew_tensions(const Vector &u, Vector &change) const
+  std::vector<unsigned int> StateOperator<dim>::renew_tensions(const Vector &u,
+                                                               Vector       &change) const
   {
+    const Nodes<dim> &nodes = solid.families.nodes();
     change.reinit(tau.get_partitioner());
     for (const unsigned int i : breakage.nodes_at_work())
       {
@@ -62,6 +65,15 @@ namespace PeriDeal
       }
     change.update_ghost_values();
     tau.update_ghost_values();
+    // In the order of all processes, for the same digits.
+    std::vector<unsigned int> changed;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      if (change.local_element(i) != 0.)
+        changed.push_back(i);
+    std::sort(changed.begin(), changed.end(), [&](const unsigned int a, const unsigned int b) {
+      return nodes.partitioner()->local_to_global(a) < nodes.partitioner()->local_to_global(b);
+    });
+    return changed;
   }
 
 
@@ -70,42 +82,20 @@ namespace PeriDeal
    * bonds between them, whole at both ends or at none. Their own forces are sums over their rows.
    */
   template <int dim>
-  void StateOperator<dim>::mend_unbalanced(Vector &r, const Vector &u, const double t) const
+  void StateOperator<dim>::mend_linear(Vector                          &r,
+                                       const Vector                    &u,
+                                       const std::vector<unsigned int> &changed,
+                                       const Vector                    &change) const
   {
     const Nodes<dim>                &nodes  = solid.families.nodes();
     const std::vector<unsigned int> &losing = breakage.nodes_at_work();
-    double                           hinder = 0.;
-    if (nonlinear() || !solid.rows.has_lattice() || solid.thermal.any() ||
-        losing.size() > 0.1 * nodes.n_owned())
-      hinder = 1.;
-    if (solid.beyond) // tau of these changes what their images bear
-      for (const unsigned int i : losing)
-        solid.beyond->for_each_of(i, [&](const auto &) { hinder = 1.; });
-    if (Utilities::MPI::max(hinder, nodes.communicator()) > 0.)
-      {
-        this->unbalanced(r, u, t);
-        return;
-      }
-    this->leave_out_contact(r);
-    u.update_ghost_values();
-    Vector change;
-    if (solid.laws.volumetric)
-      renew_tensions(u, change);
-    const auto loses = [&](const unsigned int i) {
+    const auto                       loses  = [&](const unsigned int i) {
       return std::binary_search(losing.begin(), losing.end(), i);
     };
     const auto add = [&](const unsigned int k, const double of_tau, const Tensor<1, dim> &moment) {
       for (unsigned int d = 0; d < dim; ++d)
         r.local_element(dim * k + d) += of_tau * moment[d];
     };
-    // In the order of all processes, for the same digits.
-    std::vector<unsigned int> changed;
-    for (unsigned int i = 0; solid.laws.volumetric && i < nodes.n_local(); ++i)
-      if (change.local_element(i) != 0.)
-        changed.push_back(i);
-    std::sort(changed.begin(), changed.end(), [&](const unsigned int a, const unsigned int b) {
-      return nodes.partitioner()->local_to_global(a) < nodes.partitioner()->local_to_global(b);
-    });
     std::vector<typename Families<dim>::Member> family;
     for (const unsigned int i : changed)
       {
@@ -123,7 +113,6 @@ namespace PeriDeal
                 });
             }
       }
-    find_loads(scratch, t);
     for (const unsigned int i : losing)
       {
         Tensor<1, dim> force;
@@ -136,6 +125,60 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           r.local_element(dim * i + d) = scratch.local_element(dim * i + d) + force[d];
       }
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::sum_again(Vector                          &r,
+                                     const Vector                    &u,
+                                     const std::vector<unsigned int> &changed) const
+  {
+    const unsigned int     n_owned = solid.families.nodes().n_owned();
+    std::set<unsigned int> rows(breakage.nodes_at_work().begin(), breakage.nodes_at_work().end());
+    std::vector<typename Families<dim>::Member> family;
+    for (const unsigned int i : changed)
+      {
+        solid.families.members_of(i, family);
+        for (const auto &member : family)
+          if (member.neighbor < n_owned)
+            rows.insert(member.neighbor);
+      }
+    const std::vector<unsigned int> list(rows.begin(), rows.end());
+    solid.kinematics.find_forces_of(list, r.begin(), u.begin(), tau);
+    for (const unsigned int i : list)
+      for (unsigned int k = dim * i; k < dim * (i + 1); ++k)
+        r.local_element(k) = scratch.local_element(k) - r.local_element(k);
+  }
+
+
+  template <int dim>
+  void StateOperator<dim>::mend_unbalanced(Vector &r, const Vector &u, const double t) const
+  {
+    const Nodes<dim>                &nodes  = solid.families.nodes();
+    const std::vector<unsigned int> &losing = breakage.nodes_at_work();
+    double                           hinder = 0.;
+    if ((!nonlinear() && (!solid.rows.has_lattice() || solid.thermal.any())) ||
+        losing.size() > 0.1 * nodes.n_owned())
+      hinder = 1.;
+    if (solid.beyond) // tau of these changes what their images bear
+      for (const unsigned int i : losing)
+        solid.beyond->for_each_of(i, [&](const auto &) { hinder = 1.; });
+    if (Utilities::MPI::max(hinder, nodes.communicator()) > 0.)
+      {
+        this->unbalanced(r, u, t);
+        return;
+      }
+    this->leave_out_contact(r);
+    u.update_ghost_values();
+    std::vector<unsigned int> changed;
+    Vector                    change;
+    if (solid.laws.volumetric)
+      changed = renew_tensions(u, change);
+    find_loads(scratch, t);
+    if (nonlinear())
+      sum_again(r, u, changed);
+    else
+      mend_linear(r, u, changed, change);
     u.set_ghost_state(false);
     this->add_contact(r, u, true, -1.);
   }
@@ -246,18 +289,17 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                       \
-  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &)      \
-    const;                                                                                              \
-  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const;      \
-  template void StateOperator<dim>::renew_tensions(const Vector &, Vector &) const;                     \
-  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);          \
-  template double             StateOperator<dim>::contact_family(const unsigned int,                    \
-                                                     std::vector<FacingBond<dim>> &) const; \
-  template void               StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool);     \
-  template void               StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);      \
-  template void               StateOperator<dim>::exchange_bonds(Archive &,                             \
-                                                   const NodeKeys &,                      \
+#define PERIDEAL_INSTANTIATE(dim)                                                                  \
+  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &) \
+    const;                                                                                         \
+  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const; \
+  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);     \
+  template double             StateOperator<dim>::contact_family(const unsigned int,               \
+                                                     std::vector<FacingBond<dim>> &) const;        \
+  template void StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool);              \
+  template void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);               \
+  template void StateOperator<dim>::exchange_bonds(Archive &,                                      \
+                                                   const NodeKeys &,                               \
                                                    const std::function<void()> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -74,6 +74,7 @@ namespace PeriDeal
       nodes.n_local(),
       [&](const unsigned int i) { return this->thermal_strain_at(i); },
       nodes.communicator());
+    solid.kinematics.forget_exceeding();
     this->set_contact_strains();
     find_thermal_loads();
   }
@@ -203,7 +204,7 @@ namespace PeriDeal
     if (!nonlinear())
       return 0.;
     u.update_ghost_values();
-    const double largest = solid.kinematics.largest_stretch(u.begin(), breakage.broken_state());
+    const double largest = solid.kinematics.largest_stretch(u.begin());
     u.set_ghost_state(false);
     return largest;
   }
@@ -252,12 +253,9 @@ namespace PeriDeal
     u.update_ghost_values();
     find_tensions(u, solid.kinematics.is_strained());
     double sum = solid.beyond ? solid.beyond->energy(u) : 0.;
+    sum += solid.kinematics.energy_of_extensions(u.begin());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        solid.rows.for_each(i, [&](const auto &bond) {
-          const double product = solid.kinematics.extension_moment(u.begin(), i, bond);
-          sum += 0.25 * bond.spring * product * product;
-        });
         const StateLaw &law = solid.laws[i];
         if (solid.laws.volumetric && law.volumetric != 0.)
           {
@@ -406,7 +404,7 @@ namespace PeriDeal
       std::llround(Utilities::MPI::sum(static_cast<double>(rows.n_stored()) * (dim + 1.), all));
     size.memory = solid.families.memory_consumption() + breakage.memory_consumption() +
                   solid.laws.memory_consumption() + solid.thermal.memory_consumption() +
-                  rows.memory_consumption() +
+                  solid.kinematics.memory_consumption() + rows.memory_consumption() +
                   (solid.beyond ? solid.beyond->memory_consumption() : 0);
     size.form = rows.has_lattice() ? "lattice" : "stored";
     return size;

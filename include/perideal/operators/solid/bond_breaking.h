@@ -139,6 +139,7 @@ namespace PeriDeal
 
   private:
     void                      find_critical_stretches();
+    void                      watch_limits(); // of full kinematics
     std::pair<double, double> stretch_and_limit(
       const double                        *u,
       const unsigned int                   i,
@@ -157,10 +158,9 @@ namespace PeriDeal
     std::vector<double>        critical;
     BondState                  state;
     BreakHistory               so_far;
-    std::vector<unsigned int>  loaded_side;    // which in `Traction` is within a horizon of these
-    Overstretched              inside, beyond; // what is to break next, inside by stored bonds
-    std::vector<unsigned int>  losing;         // nodes of these, in ascending order
-    std::unique_ptr<StretchScreen<dim>>         screen; // null: all bonds are looked at
-    std::vector<typename Families<dim>::Member> family; // of the node that is looked at
+    std::vector<unsigned int>  loaded_side;     // which in `Traction` is within a horizon of these
+    Overstretched              inside, beyond;  // what is to break next, inside by stored bonds
+    std::vector<unsigned int>  losing;          // nodes of these, in ascending order
+    std::unique_ptr<StretchScreen<dim>> screen; // null: all bonds are looked at
   };
 } // namespace PeriDeal

@@ -74,18 +74,52 @@ namespace PeriDeal
     /** y = -F of the deformed body, with tau = c theta/q. */
     void find_forces(Vector &y, const double *u, const Vector &tau) const;
 
+    /** The same of single nodes, with full kinematics. y are those of the owned nodes. */
+    void find_forces_of(const std::vector<unsigned int> &nodes,
+                        double                          *y,
+                        const double                    *u,
+                        const Vector                    &tau) const;
+
+    /**
+     * Sum of (W x e)^2 spring/4 over the bonds of owned nodes: of their energy what is none of
+     * dilatations. Not collective.
+     */
+    double energy_of_extensions(const double *u) const;
+
+    /**
+     * With full kinematics: find_forces() is to look for bonds with e/x above a limit, which each
+     * owned node has.
+     */
+    void watch(std::vector<double> limits);
+
+    /**
+     * Whether bonds of owned nodes may be above their limits at u, by round-off; null: that has not
+     * been looked at. Valid until the next call of a function that takes displacements.
+     */
+    const unsigned char *exceeding(const double *u) const;
+
+    /** Thermal strains are others. */
+    void forget_exceeding()
+    {
+      seen = false;
+    }
+
     void linearize(const double *u, const Vector &tau);
 
     /** Adds to y what stiffness across bonds does. */
     void add_geometric_forces(Vector &y, const double *x, const BondState &state) const;
 
     /** Of |Y|/x - 1, either sign, over unbroken bonds. Collective. */
-    double largest_stretch(const double *u, const BondState &state) const;
+    double largest_stretch(const double *u) const;
 
     /** Let a bond bear nothing any more. */
     void release(const std::size_t number);
 
+    std::size_t memory_consumption() const;
+
   private:
+    void         take(const double *u, const Vector *tau) const;
+    DeformedRows all_rows() const;
     double strained_extension_moment(const double *u, const unsigned int i, const Bond &bond) const;
     dealii::Tensor<1, dim> deformed_bond(const double      *u,
                                          const unsigned int i,
@@ -96,5 +130,11 @@ namespace PeriDeal
     const ThermalStrains &thermal;
     const bool            full;
     std::vector<double>   lengths, across; // of the stored bonds
+    std::vector<double>   limits;          // of e/x; empty: none
+
+    // Of owned nodes and ghosts, with full kinematics, for the loops over rows.
+    mutable std::vector<DeformedRows::Node> nodes;
+    mutable std::vector<unsigned char>      exceeds;
+    mutable bool                            seen = false; // exceeds is that of these displacements
   };
 } // namespace PeriDeal

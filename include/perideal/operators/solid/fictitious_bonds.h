@@ -8,6 +8,7 @@
 #include <perideal/operators/solid/solid_rows.h>
 #include <perideal/operators/solid/thermal_strains.h>
 
+#include <algorithm>
 #include <functional>
 #include <unordered_map>
 #include <utility>
@@ -48,8 +49,14 @@ namespace PeriDeal
       bool                   whole;
     };
 
-    /** Families have to outlive this object, with the cracks that they have now. Not collective. */
-    FictitiousBonds(const Families<dim> &families, const std::array<BeyondSide, 2 * dim> &beyond);
+    /**
+     * Families have to outlive this object, with the cracks that they have now. Not collective.
+     * @param may_pack store which of their family bonds are: with linear kinematics, where cracks
+     *                 do not grow
+     */
+    FictitiousBonds(const Families<dim>                   &families,
+                    const std::array<BeyondSide, 2 * dim> &beyond,
+                    const bool                             may_pack);
 
     /** The same of a mesh. Not collective. */
     FictitiousBonds(const Families<dim> &families, const std::vector<BoundaryImage<dim>> &beyond);
@@ -57,7 +64,7 @@ namespace PeriDeal
     /** Add sum W x^2/V_i to q of the owned nodes. */
     void add_weights(Vector &q) const;
 
-    /** Make the springs those of b_i/q_i; @p full keeps what full kinematics need. */
+    /** Make the springs those of b_i/q_i; @p full: of full kinematics. Laws are referred to. */
     void find_springs(const NodeLaws<dim> &laws, const bool full);
 
     void set_thermal_strains(const ThermalStrains &strain);
@@ -66,16 +73,15 @@ namespace PeriDeal
     template <typename Visit>
     void for_each_of(const unsigned int i, const Visit &visit) const
     {
-      if (!starts.empty())
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
-          visit(Bond{k, i, image_of_bond[k], moments[k], springs[k], state.is_whole(k)});
+      if (const std::size_t place = place_of(i); place < list.size())
+        visit_place(place, visit);
     }
 
     template <typename Visit>
     void for_each(const Visit &visit) const
     {
-      for (const unsigned int i : list)
-        for_each_of(i, visit);
+      for (std::size_t place = 0; place < list.size(); ++place)
+        visit_place(place, visit);
     }
 
     /** The fictitious nodes. Their displacements have to be found for the next four functions. */
@@ -100,10 +106,7 @@ namespace PeriDeal
     /** W x e, thermal extension taken off. */
     double extension_moment(const Bond &bond, const double *u) const;
 
-    /**
-     * K x of what does not depend on dilatations, and with tau of owned nodes (or null) of what
-     * does: adds to y. Collective.
-     */
+    /** Adds K x to y, with tau of owned nodes (or null) that of dilatations. Collective. */
     void add_forces(Vector &y, const Vector &x, const double *tau) const;
 
     /** W x, also in the deformed body; and the tangent's stiffness across the bond. */
@@ -126,10 +129,7 @@ namespace PeriDeal
     /** -F of the deformed or warmer body. Collective. */
     void add_strained_forces(Vector &y, const Vector &u, const Vector &tau) const;
 
-    /**
-     * The tangent of the deformed body: directions, and a stiffness across the bond, whose forces
-     * add_geometric_forces() adds. The latter is collective.
-     */
+    /** The tangent of the deformed body; across bonds add_geometric_forces(), collective. */
     void linearize(const Vector &u, const Vector &tau);
     void add_geometric_forces(Vector &y, const Vector &x) const;
 
@@ -218,6 +218,22 @@ namespace PeriDeal
 
   private:
     void release(const std::size_t number); // bears nothing any more
+
+    std::size_t place_of(const unsigned int node) const // in the list, or its size
+    {
+      const auto found = std::lower_bound(list.begin(), list.end(), node);
+      return found != list.end() && *found == node ? found - list.begin() : list.size();
+    }
+
+    template <typename Visit>
+    void visit_place(const std::size_t place, const Visit &visit) const
+    {
+      for (std::size_t k = starts[place]; k < starts[place + 1]; ++k)
+        visit(bond_at(k, list[place]));
+    }
+
+    Bond bond_at(const std::size_t number, const unsigned int node) const;
+
     using Site  = typename FictitiousExtension<dim>::Site;
     using Index = typename FictitiousExtension<dim>::Index;
     using Term  = typename Site::Term;
@@ -243,6 +259,7 @@ namespace PeriDeal
                           const dealii::Tensor<1, dim> &xi,
                           const double                  weight,
                           const bool                    cut,
+                          const unsigned int            member, // where they are packed
                           Search                       &search);
     unsigned int image_at(const Index &index,
                           const Site  &site,
@@ -264,11 +281,15 @@ namespace PeriDeal
     const Families<dim>                &families;
     FictitiousImages<dim>               fictitious;
     std::vector<unsigned int>           list;   // owned nodes that have such bonds
-    std::vector<std::size_t>            starts; // of all owned nodes, or empty
+    std::vector<std::size_t>            starts; // of the bonds of these
     std::vector<unsigned int>           image_of_bond;
     BondState                           state;
     std::vector<dealii::Tensor<1, dim>> moments;
     std::vector<double>                 springs, lengths, across, strains; // springs: first W x^2
-    std::vector<double>                 squares; // W x^2, where cracks grow
+    std::vector<double>                 squares;       // W x^2, where cracks grow
+    bool                                packs = false; // then instead of moments and springs:
+    std::vector<BondCode::Code>         codes;
+    std::vector<UnitBond<dim>>          units;
+    const NodeLaws<dim>                *laws = nullptr; // once springs are found
   };
 } // namespace PeriDeal

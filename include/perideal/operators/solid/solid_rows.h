@@ -6,12 +6,15 @@
 #include <perideal/bonds/bond_state.h>
 #include <perideal/bonds/families.h>
 #include <perideal/mesh/lattice_sites.h>
+#include <perideal/operators/solid/deformed_rows.h>
 #include <perideal/operators/solid/node_laws.h>
+#include <perideal/operators/solid/unit_bonds.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -24,7 +27,8 @@ namespace PeriDeal
    * The bonds of the linear peridynamic solid between nodes of the body (StateOperator), row by
    * row, and the sums over them that an application takes. On a lattice in 2D and 3D, with linear
    * kinematics, where no surface is corrected, nodes store none (StateLattice) whose bonds no crack
-   * cuts, now or later. Other bonds are stored at both ends: W xi, one number, a column.
+   * cuts, now or later. Other bonds are stored at both ends: W xi, one number, a column; on such a
+   * lattice a column and which bond of its family it is, from which the others follow.
    *
    * A bond that breaks, or that a growing crack cuts, stays in its row and bears nothing
    * (release()). A node gets a row when the first of its bonds is about to break (store_row()): its
@@ -45,13 +49,7 @@ namespace PeriDeal
 
     static constexpr std::size_t not_stored = static_cast<std::size_t>(-1);
 
-    /** A bond of a complete family, with volumes of 1. */
-    struct LatticeBond
-    {
-      typename Lattice<dim>::Index offset;
-      dealii::Tensor<1, dim>       moment; // w xi
-      double                       weight; // w x^2
-    };
+    using LatticeBond = UnitBond<dim>;
 
     /**
      * Sets q of the owned nodes to the sums over these bonds. Families and laws have to outlive
@@ -60,10 +58,7 @@ namespace PeriDeal
     SolidRows(const Families<dim> &families, NodeLaws<dim> &laws, const BodyParameters<dim> &body);
     ~SolidRows();
 
-    /**
-     * To be called once q is final and up to date on ghosts, unless `Surface correction` changes it
-     * here. Collective.
-     */
+    /** Once q is final, and on ghosts; `Surface correction` changes it here. Collective. */
     void find_springs(const BodyParameters<dim> &body);
 
     /** Visit the bonds of an owned node, broken or not, stored or not, in its family's order. */
@@ -80,19 +75,10 @@ namespace PeriDeal
     void for_each_stored(const unsigned int i, const Visit &visit) const
     {
       for (std::size_t k = begin_of(i); k < end_of(i); ++k)
-        visit(Bond{k, neighbors[k], moments[k], springs[k]});
+        visit(packs ? packed(i, k) : Bond{k, neighbors[k], moments[k], springs[k]});
     }
 
-    /**
-     * Visit the bonds of an owned node that stores none as it would store them, to the last bit,
-     * with their places in the row for numbers, and without their springs. @p family is scratch.
-     */
-    template <typename Visit>
-    void for_each_to_store(const unsigned int                           i,
-                           std::vector<typename Families<dim>::Member> &family,
-                           const Visit                                 &visit) const;
-
-    /** The same of a node that stores none, those of a list. */
+    /** Those of a list of a node that stores none, to the last bit as it would store them. */
     template <typename Visit>
     void for_each_of(const unsigned int              i,
                      const std::vector<LatticeBond> &list,
@@ -149,6 +135,15 @@ namespace PeriDeal
     /** Make the springs of the whole bonds of an owned node those of q as it is now. */
     void renew_springs(const unsigned int i, const BondState &state);
 
+    /** The rows of a body that stores all of its bonds; referred to. */
+    void show(DeformedRows &to) const
+    {
+      to.starts    = starts.data();
+      to.end       = starts.size() - 1;
+      to.neighbors = neighbors.data();
+      to.springs   = springs.data();
+    }
+
     /** Make a stored bond that of the tangent. */
     void set_moment(const std::size_t number, const dealii::Tensor<1, dim> &moment)
     {
@@ -196,7 +191,7 @@ namespace PeriDeal
       return n_whole;
     }
 
-    /** The owned nodes that store their bonds; numbers of bonds go up along this list. */
+    /** Owned ones; numbers of bonds go up along this list. */
     const std::vector<unsigned int> &nodes_with_rows() const
     {
       return stored_nodes;
@@ -222,26 +217,37 @@ namespace PeriDeal
     static constexpr std::uint32_t no_row = static_cast<std::uint32_t>(-1);
 
     bool              has_complete_family(const unsigned int i) const; // cut or not
-    void              list_lattice_bonds();
     std::vector<bool> find_changing(const BodyParameters<dim> &body) const;
     void              add_row(const unsigned int i, const Family &family); // springs are W x^2
+    void              pack_row(const unsigned int i, const Family &family);
     double weight_of(const unsigned int i, const Family &family, std::string &message) const;
     void   correct_surface(const BodyParameters<dim> &body);
     void   make_lattice();
+
+    Bond   packed(const unsigned int i, const std::size_t number) const;
+    double volumes_of(const unsigned int i, const std::size_t number) const;
+
+    /** Those that are not gone: visit(number, neighbor, unit bond). */
+    template <typename Visit>
+    void for_each_packed(const unsigned int i, const Visit &visit) const;
 
     const Families<dim>                &families;
     NodeLaws<dim>                      &laws;
     const double                        horizon;
     std::vector<std::size_t>            starts{0}; // of the rows, in the order of stored_nodes
     std::vector<unsigned int>           neighbors;
-    std::vector<dealii::Tensor<1, dim>> moments;
-    std::vector<double>                 springs;      // at first W x^2
+    std::vector<dealii::Tensor<1, dim>> moments;      // none where rows are packed
+    std::vector<double>                 springs;      // at first W x^2; as moments
     std::vector<unsigned int>           stored_nodes; // of these the loops are made
     double                              n_whole = 0.;
     std::vector<std::uint32_t> row_of; // of owned nodes, or no_row; empty: all in their order
-    double                     least_stiffness = 0.; // b/q, with a lattice
     std::vector<LatticeBond>   lattice_bonds;
     std::unique_ptr<StateLattice<dim>> lattice; // or none
+
+    // Rows are packed where nodes may store none.
+    bool                                        packs = false;
+    std::vector<BondCode::Code>                 codes;
+    std::vector<std::pair<std::size_t, double>> parts; // what cracks leave of bonds, ascending
   };
 
 
@@ -267,18 +273,27 @@ namespace PeriDeal
 
 
   template <int dim>
-  template <typename Visit>
-  inline void SolidRows<dim>::for_each_to_store(const unsigned int                           i,
-                                                std::vector<typename Families<dim>::Member> &family,
-                                                const Visit &visit) const
+  inline double SolidRows<dim>::volumes_of(const unsigned int i, const std::size_t number) const
   {
-    families.members_of(i, family);
-    std::size_t place = 0;
-    for (const auto &bond : family)
-      if (const double weight = bond.kept * bond.weight; weight != 0.)
-        visit(Bond{place++,
-                   bond.neighbor,
-                   weight * families.neighbors().bond_vector(i, bond.neighbor),
-                   0.});
+    const double w = families.nodes().volume(i) * families.nodes().volume(neighbors[number]);
+    if (!BondCode::is_in_part(codes[number]))
+      return w;
+    return w * std::lower_bound(parts.begin(), parts.end(), std::make_pair(number, 0.))->second;
+  }
+
+
+  template <int dim>
+  inline typename SolidRows<dim>::Bond SolidRows<dim>::packed(const unsigned int i,
+                                                              const std::size_t  number) const
+  {
+    const unsigned int j = neighbors[number];
+    if (codes[number] == BondCode::gone)
+      return {number, j, dealii::Tensor<1, dim>(), 0.};
+    const LatticeBond &bond = lattice_bonds[BondCode::number(codes[number])];
+    const double       w    = volumes_of(i, number);
+    return {number,
+            j,
+            w * bond.moment,
+            (laws.stiffness(i) + laws.stiffness(j)) / (w * bond.weight)};
   }
 } // namespace PeriDeal

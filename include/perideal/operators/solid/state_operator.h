@@ -135,9 +135,18 @@ namespace PeriDeal
 
     /**
      * tau of the nodes that have just lost bonds, and what it has changed by, of owned nodes and
-     * ghosts. Collective.
+     * ghosts; returns where, in the order of all processes. Collective.
      */
-    void renew_tensions(const Vector &u, Vector &change) const;
+    std::vector<unsigned int> renew_tensions(const Vector &u, Vector &change) const;
+
+    /** Of mend_unbalanced(): loads are in scratch. */
+    void mend_linear(Vector                          &r,
+                     const Vector                    &u,
+                     const std::vector<unsigned int> &changed,
+                     const Vector                    &change) const;
+
+    /** The same with full kinematics: the rows of these nodes and of their neighbours. */
+    void sum_again(Vector &r, const Vector &u, const std::vector<unsigned int> &changed) const;
 
     /** What these owned nodes have of energy(). Collective. */
     double energy_of(const std::vector<unsigned int> &of_nodes, const Vector &u) const;
