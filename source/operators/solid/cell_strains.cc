@@ -23,36 +23,38 @@ namespace PeriDeal
                                                           const unsigned int   n,
                                                           double *__restrict__ squares)
     {
-      double gradients[dim * dim][n_cells_at_once]; // [dim d + e]: du_d/dx_e
-      for (unsigned int d = 0; d < dim; ++d)
-        for (unsigned int e = 0; e < dim; ++e)
-          {
-            double *const to = gradients[dim * d + e];
-            for (unsigned int k = 0; k < n; ++k)
-              to[k] = 0.;
-            for (unsigned int v = 0; v < 1u << dim; ++v)
-              if (!((v >> e) & 1))
-                {
-                  const double *const low   = u + dim * corners[v] + d,
-                                      *high = u + dim * corners[v | (1u << e)] + d;
-                  const double slope        = slopes[e];
-                  for (unsigned int k = 0; k < n; ++k)
-                    to[k] += slope * (high[dim * k] - low[dim * k]);
-                }
-          }
-      for (unsigned int k = 0; k < n; ++k)
-        squares[k] = gradients[0][k] * gradients[0][k];
-      for (unsigned int d = 1; d < dim; ++d)
+      constexpr unsigned int n_edges = 1u << (dim - 1);             // of a cell, in each direction
+      double                 gradients[dim][dim * n_cells_at_once]; // [e][dim k + d]: du_d/dx_e
+      for (unsigned int e = 0; e < dim; ++e)
         {
-          const double *const own = gradients[dim * d + d];
-          for (unsigned int k = 0; k < n; ++k)
-            squares[k] += own[k] * own[k];
-          for (unsigned int e = 0; e < d; ++e)
+          const double *low[n_edges], *high[n_edges];
+          for (unsigned int v = 0, k = 0; v < 1u << dim; ++v)
+            if (!((v >> e) & 1))
+              {
+                low[k]    = u + dim * corners[v];
+                high[k++] = u + dim * corners[v | (1u << e)];
+              }
+          for (unsigned int s = 0; s < dim * n; ++s)
             {
-              const double *const a = gradients[dim * d + e], *b = gradients[dim * e + d];
-              for (unsigned int k = 0; k < n; ++k)
-                squares[k] += 0.5 * (a[k] + b[k]) * (a[k] + b[k]);
+              double sum = 0.;
+              for (unsigned int k = 0; k < n_edges; ++k)
+                sum += high[k][s] - low[k][s];
+              gradients[e][s] = slopes[e] * sum;
             }
+        }
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          double sum = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              sum += gradients[d][dim * k + d] * gradients[d][dim * k + d];
+              for (unsigned int e = 0; e < d; ++e)
+                {
+                  const double shear = gradients[e][dim * k + d] + gradients[d][dim * k + e];
+                  sum += 0.5 * shear * shear;
+                }
+            }
+          squares[k] = sum;
         }
     }
   } // namespace
