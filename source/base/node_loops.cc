@@ -112,6 +112,22 @@ namespace PeriDeal
         return all;
       }
 
+      PERIDEAL_CLONES double square_over_all(In s, In r, const std::size_t n)
+      {
+        constexpr std::size_t n_parts = 8;
+        double                sums[n_parts]{};
+        std::size_t           i = 0;
+        for (; i + n_parts <= n; i += n_parts)
+          for (std::size_t k = 0; k < n_parts; ++k)
+            sums[k] += s[i + k] > 0. ? r[i + k] * r[i + k] / s[i + k] : 0.;
+        for (; i < n; ++i)
+          sums[i % n_parts] += s[i] > 0. ? r[i] * r[i] / s[i] : 0.;
+        double all = 0.;
+        for (const double sum : sums)
+          all += sum;
+        return all;
+      }
+
       PERIDEAL_CLONES void chebyshev_all(Out               last,
                                          Out               sum,
                                          In                now,
@@ -182,6 +198,11 @@ namespace PeriDeal
     double weighted_square(const double *s, const double *r, const std::size_t n)
     {
       return weighted_square_of_all(s, r, n);
+    }
+
+    double square_over(const double *s, const double *r, const std::size_t n)
+    {
+      return square_over_all(s, r, n);
     }
 
     void negate(double *y, const std::size_t n)

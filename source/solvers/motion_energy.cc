@@ -31,9 +31,12 @@ namespace PeriDeal
   double MotionAccount::kinetic_energy(const Vector &v, const Nodes which) const
   {
     double sum = 0.;
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (which == Nodes::all || held[i] == (which == Nodes::held))
-        sum += v.local_element(i) * v.local_element(i) / inverse_mass[i];
+    if (which == Nodes::free) // looked at while steps are taken
+      sum = NodeLoops::square_over(free_inverse_mass.data(), v.begin(), held.size());
+    else
+      for (unsigned int i = 0; i < held.size(); ++i)
+        if (which == Nodes::all || held[i])
+          sum += v.local_element(i) * v.local_element(i) / inverse_mass[i];
     return 0.5 * Utilities::MPI::sum(sum, v.get_mpi_communicator());
   }
 

@@ -373,6 +373,7 @@ namespace PeriDeal
       UserError("'Stepper' in section 'Time' is '" + name +
                 "', which is not for motion. Known: " + join_names(motion_stepper_names()) + "."));
     require_mass(op);
+    op.forgoes_diagonal   = explicit_step; // from the first product on
     StepperOptions chosen = options;
     const double   limit  = explicit_step || options.time_step < 0. ? stable_motion_step(op) : 0.;
     if (options.time_step < 0.)

@@ -61,6 +61,9 @@ namespace PeriDeal
     /** The sum of s_i r_i^2, in eight parts, whatever the machine. */
     double weighted_square(const double *s, const double *r, const std::size_t n);
 
+    /** The sum of r_i^2/s_i over s_i > 0, likewise. */
+    double square_over(const double *s, const double *r, const std::size_t n);
+
     /**
      * last_i = 2 now_i - last_i - a s_i r_i, and sum_i += c last_i: a term of a Chebyshev
      * expansion.

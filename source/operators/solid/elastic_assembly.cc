@@ -102,12 +102,8 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::assemble()
   {
-    cell_data                                 = std::make_unique<CellData>(dofs.get_fe());
-    TrilinosWrappers::SparsityPattern pattern = element_pattern();
-    if (zone_bonds && !breaking)
-      zone_bonds->add_pattern(pattern, true);
-    pattern.compress();
-    stiffness.reinit(pattern);
+    cell_data = std::make_unique<CellData>(dofs.get_fe());
+    stiffness.reinit(pattern());
     if (scales_beside_cracks())
       find_crack_factors();
     mass          = 0.;
@@ -117,7 +113,7 @@ namespace PeriDeal
     for_each_own_cell([&](const Cell &cell, CellData &of_cell) {
       change_cell(cell, of_cell);
       add_thermal(of_cell, energy);
-      hanging.add_to(stiffness, of_cell.stiffness, of_cell.unknowns);
+      stiffness.add(hanging, of_cell.stiffness, of_cell.unknowns);
       make_positive(of_cell.diagonal, of_cell.mass);
       for (unsigned int i = 0; i < of_cell.unknowns.size(); ++i)
         mass(of_cell.unknowns[i]) += of_cell.mass(i / dim);
@@ -127,9 +123,9 @@ namespace PeriDeal
     if (breaking)
       set_all_bonds();
     else if (zone_bonds)
-      n_bonds = zone_bonds->add_to(stiffness, crack_factors);
+      n_bonds = zone_bonds->add_to(stiffness.sparse(), crack_factors);
     finish_thermal(energy);
-    stiffness.compress(VectorOperation::add);
+    stiffness.compress();
     mass.compress(VectorOperation::add);
     hanging.condense(mass);
     // Their masters have it; as good as nothing, but a mass.
@@ -149,7 +145,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::find_diagonal()
   {
-    for_each_entry(stiffness, [&](const unsigned int i, const auto column, const double value) {
+    stiffness.for_each_entry([&](const unsigned int i, const auto column, const double value) {
       if (column == unknowns->local_to_global(i))
         stiffness_diagonal.local_element(i) = value;
     });
@@ -176,12 +172,12 @@ namespace PeriDeal
           cell_data->assemble(*this);
           change_cell(cell, *cell_data);
           cell_data->stiffness *= multiple;
-          hanging.add_to(stiffness, cell_data->stiffness, cell_data->unknowns);
+          stiffness.add(hanging, cell_data->stiffness, cell_data->unknowns);
         }
     if (breaking)
       breaking->bonds.set_rows(of_nodes, crack_factors);
     else if (zone_bonds)
-      n_bonds += zone_bonds->add_to(stiffness, crack_factors, of_nodes, multiple);
+      n_bonds += zone_bonds->add_to(stiffness.sparse(), crack_factors, of_nodes, multiple);
   }
 
 
@@ -206,7 +202,7 @@ namespace PeriDeal
     add_parts(cells, near, -1.);
     make_change(&cells);
     add_parts(cells, near, 1.);
-    stiffness.compress(VectorOperation::add);
+    stiffness.compress();
     if (any_thermal())
       find_thermal();
   }
@@ -412,12 +408,12 @@ namespace PeriDeal
   void ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
                                              const bool                      with_bonds) const
   {
-    if (with_bonds && !breaking)
-      matrix.reinit(stiffness);
+    if (with_bonds && !breaking && !stiffness.shares_rows())
+      matrix.reinit(stiffness.sparse());
     else
       {
         TrilinosWrappers::SparsityPattern pattern = element_pattern();
-        if (with_bonds)
+        if (with_bonds && zone_bonds)
           zone_bonds->add_pattern(pattern, false);
         pattern.compress();
         matrix.reinit(pattern);
@@ -454,7 +450,7 @@ namespace PeriDeal
   {
     OperatorSize size;
     size.unknowns = unknowns->size();
-    size.nonzeros = stiffness.n_nonzero_elements();
+    size.nonzeros = stiffness.n_entries();
     size.bonds    = std::llround(
       Utilities::MPI::sum(breaking ? breaking->bonds.n_whole() : n_bonds, dofs.get_communicator()));
     size.memory = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);

@@ -5,9 +5,7 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/mapping_q1.h>
 
-#include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
-#include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/parts/element_layout.h>
 #include <perideal/operators/parts/event_work.h>
 #include <perideal/operators/solid/elastic_elements.h>
@@ -186,60 +184,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  Spectrum ElasticElements<dim>::spectrum() const
-  {
-    std::vector<double> row_sums(mass.locally_owned_size(), 0.);
-    for_each_entry(stiffness, [&](const unsigned int row, const auto, const double value) {
-      row_sums[row] += std::abs(value);
-    });
-    if (breaking)
-      breaking->bonds.add_row_sums(row_sums);
-    for (const unsigned int i : hanging.owned())
-      row_sums[i] = 0.;
-    double bound = 0.;
-    for (unsigned int i = 0; i < row_sums.size(); ++i)
-      bound = std::max(bound, row_sums[i] / mass.local_element(i));
-    bound = Utilities::MPI::max(bound, dofs.get_communicator());
-    return {bound, sharp_bound(*this, bound, [&](Vector &vector) { this->fill_noise(vector); })};
-  }
-
-  template <int dim>
-  void ElasticElements<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
-  {
-    if (!breaking)
-      {
-        matrix.copy_from(stiffness);
-        hold_unknowns(matrix, this->held_unknowns());
-        return;
-      }
-    matrix.reinit(stiffness);
-    for_each_own_cell([&](const Cell &cell, CellData &data) {
-      if (cut_by_cracks.is_cut(cell) || zone_bonds->is_parted(cell))
-        return;
-      hanging.add_to(matrix, data.stiffness, data.unknowns);
-    });
-    breaking->bonds.add_between_vertices(matrix);
-    matrix.compress(VectorOperation::add);
-    Vector loose = this->held_unknowns();
-    mark_loose(matrix, stiffness_diagonal, loose);
-    hold_unknowns(matrix, loose);
-  }
-
-  template <int dim>
-  void ElasticElements<dim>::multiply(Vector &y, const Vector &x) const
-  {
-    stiffness.vmult(y, x);
-    if (breaking)
-      {
-        x.update_ghost_values();
-        breaking->bonds.add_forces(y, x);
-        x.set_ghost_state(false);
-      }
-    hanging.set(y, 0.); // the nodes they follow from have all of it
-  }
-
-
-  template <int dim>
   void ElasticElements<dim>::set_all_bonds()
   {
     std::vector<unsigned int> owned(nodes->locally_owned_size());
@@ -269,7 +213,7 @@ namespace PeriDeal
             force_change(data.unknowns[i]) += multiple * data.force(i, u);
           held += data.thermal_energy;
           data.stiffness *= multiple;
-          hanging.add_to(stiffness, data.stiffness, data.unknowns);
+          stiffness.add(hanging, data.stiffness, data.unknowns);
           for (unsigned int i = 0; i < data.unknowns.size() && warms; ++i)
             thermal_loads(data.unknowns[i]) += multiple * data.thermal(i);
         }
@@ -298,7 +242,7 @@ namespace PeriDeal
     double gained  = add_zone_parts(cells, rows, -1., u);
     make_change();
     gained += add_zone_parts(cells, rows, 1., u);
-    stiffness.compress(VectorOperation::add);
+    stiffness.compress();
     if (any_thermal())
       {
         thermal_loads.compress(VectorOperation::add);
@@ -306,7 +250,8 @@ namespace PeriDeal
         this->keep_constant_loads();
       }
     note_parted(cells);
-    mend_diagonal(cells, rows);
+    if (!this->forgoes_diagonal)
+      mend_diagonal(cells, rows);
     return this->change_contact(rows, u) - Utilities::MPI::sum(gained, dofs.get_communicator());
   }
 
@@ -366,8 +311,7 @@ namespace PeriDeal
     for (const unsigned int i : touched)
       for (unsigned int d = 0; d < dim; ++d)
         {
-          const auto unknown = unknowns->local_to_global(dim * i + d);
-          double     value   = stiffness.el(unknown, unknown);
+          double value = stiffness.diagonal(i, d);
           breaking->bonds.for_each(i, [&](const auto &bond, const Tensor<1, dim> &xi) {
             value += bond.strength * xi[d] * xi[d];
           });

@@ -6,16 +6,11 @@
 
 #include <perideal/base/place_text.h>
 #include <perideal/base/point_order.h>
-#include <perideal/base/user_error.h>
-#include <perideal/operators/coupling/exchange_laws.h>
 #include <perideal/operators/solid/zone_breaking.h>
-#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
-
-#include "stretch_fault.h"
 
 namespace PeriDeal
 {
@@ -37,38 +32,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ZoneBreaking<dim>::require(const BodyParameters<dim> &body)
-  {
-    const CouplingControl &coupling = body.coupling;
-    const Material        &material = body.material;
-    const std::string entry  = material.fracture_energy ? "Fracture energy" : "Critical stretch";
-    const bool        breaks = material.fracture_energy || material.critical_stretch;
-    coupling.refuse(
-      coupling.follows_stretches() && !breaks,
-      "Zone",
-      "'follow' is for bonds that may break: give section 'Material' a 'Fracture energy' or a 'Critical stretch', or use 'cracks: 1'.");
-    if (!breaks)
-      return;
-    coupling.refuse(!coupling.exchanges(),
-                    "Scheme",
-                    "'" + coupling.scheme_text() +
-                      "' has bonds that do not break, but section 'Material' has a '" + entry +
-                      "'. Use 'exchange', or 'Models = peridynamics'.");
-    coupling.refuse(
-      coupling.is_near_cracks() && coupling.width < 1.,
-      "Zone",
-      "found '" + coupling.zone_text() + "'; where bonds may break ('" + entry +
-        "' in section 'Material') they would join through broken cells in a zone of less than one horizon. Use 'follow', or 'cracks: 1' or more.");
-    material.refuse(
-      !body.domain.has_lattice() || body.cracks.on_faces(),
-      entry,
-      !body.domain.has_lattice() ?
-        "is for lattices of equal cells with 'Models = coupled'; on meshes of other cells bonds break in 'Models = peridynamics'." :
-        "is not for 'Mesh = faces' in section 'Cracks' with 'Models = coupled'; use 'removed'.");
-  }
-
-
-  template <int dim>
   ZoneBreaking<dim>::ZoneBreaking(Coupling<dim>             &coupling,
                                   const DoFHandler<dim>     &dofs,
                                   const BodyParameters<dim> &body)
@@ -81,43 +44,6 @@ namespace PeriDeal
     find_critical_stretches(body);
     if (share_of_zone > 0.)
       find_cells(dofs);
-  }
-
-
-  template <int dim>
-  void ZoneBreaking<dim>::find_critical_stretches(const BodyParameters<dim> &body)
-  {
-    const Material          &material  = body.material;
-    const double             of_square = ElasticBonds<dim>::energy_per_square(of_lattice);
-    const CellStiffness<dim> stiffness = ElasticBonds<dim>::stiffness(body);
-    std::string              message;
-    Vector                   stretches(nodes.partitioner());
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        const Point<dim> &p = nodes.position(i);
-        double           &s = stretches.local_element(i);
-        s                   = material.critical_stretch ?
-                                material.critical_stretch->value(p) :
-                                std::sqrt(material.fracture_energy->value(p) / (stiffness.at(p) * of_square));
-        if (message.empty() && !(s > 0.))
-          message = stretch_fault(material.critical_stretch.has_value(), p);
-      }
-    throw_on_all_if_any(nodes.communicator(), message);
-    stretches.update_ghost_values();
-    critical.assign(stretches.begin(), stretches.begin() + nodes.n_local());
-  }
-
-
-  template <int dim>
-  void ZoneBreaking<dim>::find_cells(const DoFHandler<dim> &dofs)
-  {
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && of_lattice.is_of_lattice(cell))
-        {
-          cells.emplace_back();
-          for (const unsigned int v : cell->vertex_indices())
-            cells.back()[v] = nodes.partitioner()->global_to_local(cell->vertex_dof_index(v, 0));
-        }
   }
 
 
@@ -296,7 +222,7 @@ namespace PeriDeal
       own.push_back(centre(corners));
       return true;
     };
-    cells.erase(std::remove_if(cells.begin(), cells.end(), is_lit), cells.end());
+    cells.visit_stretched(u, is_lit);
     std::vector<Point<dim>> places = gather(own, nodes.communicator());
     std::vector<Point<dim>> ends;
     for (; n_followed < broken.size(); ++n_followed)
@@ -485,7 +411,7 @@ namespace PeriDeal
   {
     return bonds.memory_consumption() +
            (critical.capacity() + thermal.capacity()) * sizeof(double) +
-           cells.capacity() * sizeof(cells[0]) + broken.capacity() * sizeof(Break);
+           cells.memory_consumption() + broken.capacity() * sizeof(Break);
   }
 
 

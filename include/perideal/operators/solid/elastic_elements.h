@@ -4,24 +4,19 @@
 #pragma once
 
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/laws/elasticity.h>
 #include <perideal/mesh/cell_search.h>
 #include <perideal/operators/parts/condition_faces.h>
 #include <perideal/operators/parts/crack_side_factors.h>
 #include <perideal/operators/parts/cut_cells.h>
+#include <perideal/operators/parts/element_matrix.h>
 #include <perideal/operators/parts/hanging_nodes.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid/solid_operator.h>
 #include <perideal/operators/solid/zone_breaking.h>
 
 #include <memory>
-
-namespace dealii::TrilinosWrappers
-{
-  class SparsityPattern;
-}
 
 namespace PeriDeal
 {
@@ -44,6 +39,8 @@ namespace PeriDeal
    * Where bonds may break (ZoneBreaking) they are no part of the matrix but a list beside it, and
    * what breaks or joins the zone changes only cells and rows beside it. The preconditioner is then
    * made for the elements of cells that are not cut, with the bonds between vertices of one cell.
+   *
+   * Where explicit steps follow rows of the matrix share their values (ElementMatrix).
    *
    * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j
    * tr K_ij r_ij^2), C_abab = dim lambda + dim (dim + 1) mu, clipped to [0.5, 4]; elsewhere g = 1.
@@ -222,6 +219,7 @@ namespace PeriDeal
 
     /** Of cells alone, with rows of other processes; not compressed. */
     dealii::TrilinosWrappers::SparsityPattern element_pattern() const;
+    dealii::TrilinosWrappers::SparsityPattern pattern() const; // of K as it is kept
 
     void find_positions();
     void find_conditions();
@@ -266,6 +264,7 @@ namespace PeriDeal
     std::vector<Cell> known_cells() const; // own and ghosts
     void              note_parted(const std::vector<Cell> &of_cells);
     void              set_all_bonds();
+    void              share_rows_for_steps() const;
     void              throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;
@@ -280,7 +279,7 @@ namespace PeriDeal
     const HangingNodes<dim>                        hanging;
     std::vector<PartUnknown<dim>>                  part_unknowns; // of regions and points
     std::vector<dealii::Point<dim>>                positions;
-    dealii::TrilinosWrappers::SparseMatrix         stiffness;
+    mutable ElementMatrix<dim, dim>                stiffness;
     std::unique_ptr<CellData>                      cell_data;
     Vector                                         volumes;
     CrackSideFactors                               crack_factors;

@@ -6,6 +6,7 @@
 #include <perideal/bonds/bond_break.h>
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/solid/elastic_operator.h>
+#include <perideal/operators/solid/stretched_cells.h>
 #include <perideal/operators/solid/zone_bonds.h>
 #include <perideal/scene/body_parameters.h>
 
@@ -47,6 +48,7 @@ namespace PeriDeal
     void set_thermal(std::vector<double> strains)
     {
       thermal = std::move(strains);
+      set_limits_of_cells();
     }
 
     const std::vector<double> &thermal_strains() const
@@ -143,6 +145,7 @@ namespace PeriDeal
 
     void find_critical_stretches(const BodyParameters<dim> &body);
     void find_cells(const dealii::DoFHandler<dim> &dofs);
+    void set_limits_of_cells();
     /**
      * Thermal strain taken off, over the smallest critical stretch of the corners; 0 where its
      * bound, the norm of the strain, is not @p at_least so much.
@@ -155,15 +158,15 @@ namespace PeriDeal
     /** Local number of a node, or none. */
     std::optional<unsigned int> known(const dealii::types::global_dof_index node) const;
 
-    LatticeBonds<dim>                               &of_lattice;
-    const Nodes<dim>                                &nodes;
-    const double                                     horizon;
-    const double                                     share_of_zone; // 0: the zone stays
-    std::vector<double>                              critical;      // of all nodes known here
-    std::vector<double>                              thermal;
-    std::vector<std::array<unsigned int, n_corners>> cells;  // whose centres have lit nothing yet
-    std::vector<Break>                               broken; // in the order of breaking
-    std::size_t                                      n_followed = 0; // of those, by the zone
-    std::vector<bool>                                kept_zone;
+    LatticeBonds<dim>  &of_lattice;
+    const Nodes<dim>   &nodes;
+    const double        horizon;
+    const double        share_of_zone; // 0: the zone stays
+    std::vector<double> critical;      // of all nodes known here
+    std::vector<double> thermal;
+    StretchedCells<dim> cells;          // whose centres have lit nothing yet
+    std::vector<Break>  broken;         // in the order of breaking
+    std::size_t         n_followed = 0; // of those, by the zone
+    std::vector<bool>   kept_zone;
   };
 } // namespace PeriDeal

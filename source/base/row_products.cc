@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// This file wants -O3 -ffp-contract=off.
+
+#include "row_products.h"
+
+// GCC compiles a function marked so for each instruction set, and the first call picks one.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+  !defined(__SANITIZE_ADDRESS__)
+#  define PERIDEAL_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#  define PERIDEAL_CLONES
+#endif
+#define PERIDEAL_INLINE inline __attribute__((always_inline))
+
+namespace PeriDeal
+{
+  namespace RowProducts
+  {
+    namespace
+    {
+      // One register or several, wherever they are in memory.
+      typedef double Pack __attribute__((vector_size(64), aligned(8), may_alias));
+
+      PERIDEAL_INLINE const Pack &pack(const double *const at)
+      {
+        return *reinterpret_cast<const Pack *>(at);
+      }
+
+      template <unsigned int n>
+      PERIDEAL_INLINE void along(double *__restrict__ y,
+                                 const double *__restrict__ x,
+                                 const int *__restrict__ offsets,
+                                 const double *__restrict__ coefficients,
+                                 const unsigned int n_offsets,
+                                 const std::size_t  begin,
+                                 const std::size_t  end)
+      {
+        constexpr unsigned int next = n == 3 ? 8 : 0;
+        for (std::size_t s = begin;;)
+          {
+            Pack          a{}, b{}, c{};
+            const double *factor = coefficients;
+            for (unsigned int m = 0; m < n_offsets; ++m, factor += period(n))
+              {
+                const double *const value = x + (static_cast<std::ptrdiff_t>(s) + offsets[m]);
+                a += pack(factor) * pack(value);
+                b += pack(factor + next) * pack(value + 8);
+                c += pack(factor + 2 * next) * pack(value + 16);
+              }
+            *reinterpret_cast<Pack *>(y + s)      = a;
+            *reinterpret_cast<Pack *>(y + s + 8)  = b;
+            *reinterpret_cast<Pack *>(y + s + 16) = c;
+            if (s + chunk == end)
+              return;
+            s = s + 2 * chunk <= end ? s + chunk : end - chunk; // the last ones twice
+          }
+      }
+
+      PERIDEAL_CLONES void along_1(double           *y,
+                                   const double     *x,
+                                   const int        *offsets,
+                                   const double     *coefficients,
+                                   const unsigned    n_offsets,
+                                   const std::size_t begin,
+                                   const std::size_t end)
+      {
+        along<1>(y, x, offsets, coefficients, n_offsets, begin, end);
+      }
+
+      PERIDEAL_CLONES void along_2(double           *y,
+                                   const double     *x,
+                                   const int        *offsets,
+                                   const double     *coefficients,
+                                   const unsigned    n_offsets,
+                                   const std::size_t begin,
+                                   const std::size_t end)
+      {
+        along<2>(y, x, offsets, coefficients, n_offsets, begin, end);
+      }
+
+      PERIDEAL_CLONES void along_3(double           *y,
+                                   const double     *x,
+                                   const int        *offsets,
+                                   const double     *coefficients,
+                                   const unsigned    n_offsets,
+                                   const std::size_t begin,
+                                   const std::size_t end)
+      {
+        along<3>(y, x, offsets, coefficients, n_offsets, begin, end);
+      }
+
+      template <unsigned int n>
+      PERIDEAL_INLINE void one(double *__restrict__ y,
+                               const double *__restrict__ x,
+                               const std::uint32_t *columns,
+                               const std::uint32_t  shift,
+                               const double        *blocks,
+                               const unsigned int   n_blocks)
+      {
+        double sum[n]{};
+        for (unsigned int k = 0; k < n_blocks; ++k, blocks += n * n)
+          {
+            const double *const value = x + static_cast<std::size_t>(n) * (columns[k] + shift);
+            for (unsigned int e = 0; e < n; ++e)
+              for (unsigned int c = 0; c < n; ++c)
+                sum[c] += blocks[n * e + c] * value[e];
+          }
+        for (unsigned int c = 0; c < n; ++c)
+          y[c] = sum[c];
+      }
+    } // namespace
+
+
+    void along_rows(const unsigned int n,
+                    double            *y,
+                    const double      *x,
+                    const int         *offsets,
+                    const double      *coefficients,
+                    const unsigned int n_offsets,
+                    const std::size_t  begin,
+                    const std::size_t  end)
+    {
+      (n == 1 ? along_1 :
+       n == 2 ? along_2 :
+                along_3)(y, x, offsets, coefficients, n_offsets, begin, end);
+    }
+
+    void one_row(const unsigned int   n,
+                 double              *y,
+                 const double        *x,
+                 const std::uint32_t *columns,
+                 const std::uint32_t  shift,
+                 const double        *blocks,
+                 const unsigned int   n_blocks)
+    {
+      (n == 1 ? one<1> : n == 2 ? one<2> : one<3>)(y, x, columns, shift, blocks, n_blocks);
+    }
+  } // namespace RowProducts
+} // namespace PeriDeal
