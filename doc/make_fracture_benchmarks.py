@@ -3,7 +3,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Compute and measure what doc/fracture_benchmarks.md tells, and draw its figures.
 
-    python3 doc/make_fracture_benchmarks.py [--program PERIDEAL] [--output FOLDER] [quench] [impact] [glass] [beam] [eccentric] [strip]
+    python3 doc/make_fracture_benchmarks.py [--program PERIDEAL] [--output FOLDER] [quench] [impact] [glass] [beam] [eccentric] [strip] [torsion]
 
 Runs that are complete in FOLDER (output/fracture_benchmarks) are not computed again. All of them take about an hour on one core.
 """
@@ -20,6 +20,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "scenes"))
@@ -107,6 +108,9 @@ RUNS = {
         **{f"{t} K": pushed(t) for t in (60, 140, 250)},
         "250 K, m = 4": {**pushed(250), "Peridynamics/Horizon ratio": 4, "Time/End time": 80},
         "400 K, m = 4": {**pushed(400), "Peridynamics/Horizon ratio": 4, "Time/End time": 40}}),
+    "torsion": ("notched_torsion", {
+        "11 cells high": {},
+        "5 cells high": {"Domain/Cells": "20, 5, 5"}}),
 }
 
 
@@ -215,6 +219,29 @@ def strip(results):
         rate = (rows[-1][1] - near[1]) / (3e-4 * (rows[-1][0] - near[0]))
         print(f"  {name:8} {rows[-1][2]:.0f} bonds; the crack ends at {1e3 * measures.front(x, y, table, 0.005):.2f} mm, the front is at {8 + 0.3 * rows[-1][0]:.2f} mm; {rate:.2f} J/m^2 of the way")
     draw("fracture_strip", results, 3)
+
+
+def torsion(results):
+    """Torque against twist, and where the crack comes out of the sides of the beam."""
+    for name, result in results:
+        nodes, damage = measures.nodes_and_damage(result)
+        torques = [(t, 2 * energy / (6e-3 * t), bonds) for t, energy, bonds in result.history("strain energy", BROKEN) if t > 0]
+        peak = max(torques, key=lambda row: row[1])
+        first = next((row for row in torques if row[2] > 0), (math.nan,) * 3)
+        angles = [round(measures.angle_in_layer(nodes, damage, y), 1) for y in (-0.0045, -0.0227, -0.0318, -0.0409)]
+        print(f"  {name:22} peak {peak[1]:.0f} N m at a twist of {6e-3 * peak[0]:.2e}; first break at {first[1]:.0f} N m; {torques[-1][1]:.0f} N m at the end; angles to the axis in layers, from the notch down: {angles}")
+    unrolled([(name, *measures.sides_of_beam(*measures.nodes_and_damage(result))) for name, result in results])
+
+
+def unrolled(pictures):
+    """The damage on the sides of a beam, front, bottom and back side one below the other."""
+    figure, axes = plt.subplots(1, len(pictures), figsize=(14, 5.2), squeeze=False, layout="constrained")
+    for place, (title, (x, _, _), sides) in zip(axes.ravel(), pictures):
+        place.imshow(np.vstack(sides), extent=(1e3 * x[0], 1e3 * x[-1], 300, 0), cmap="viridis", vmin=0, vmax=0.6, interpolation="nearest")
+        place.set_title(title, fontsize=10)
+        place.set_yticks((50, 150, 250), ("front", "bottom", "back"))
+    figure.savefig(ROOT / "doc" / "figures" / "fracture_torsion.png", dpi=72)
+    plt.close(figure)
 
 
 def main():

@@ -49,6 +49,25 @@ def nodes_and_damage(result, entry=-1):
         return file["nodes"][:], file["damage"][:].ravel()
 
 
+def sides_of_beam(nodes, values):
+    """Of a beam along x: coordinates x and tables [row, x] of a value at the nodes of its front (z largest, from above), bottom (from the front) and back side (from below)."""
+    axes, places = zip(*(np.unique(np.round(nodes[:, d], 9), return_inverse=True) for d in range(3)))
+    table = np.zeros([len(axis) for axis in axes])
+    table[places] = values
+    front, bottom, back = table[:, ::-1, -1].T, table[:, 0, ::-1].T, table[:, :, 0].T
+    return axes, (front, bottom, back)
+
+
+def angle_in_layer(nodes, damage, y, within=0.025):
+    """Angle to x, in degrees, of the straight line (total least squares) through the damaged nodes nearer than `within` to z = 0 in the layer nearest to y; nan where there are few."""
+    layer = abs(nodes[:, 1] - y) < abs(nodes[:, 1] - y).min() + 1e-9
+    points = np.unique(np.round(nodes[layer & (damage > 0.3) & (abs(nodes[:, 2]) < within)][:, [0, 2]], 9), axis=0)
+    if len(points) < 4:
+        return math.nan
+    along = np.linalg.svd(points - points.mean(0))[2][0]
+    return math.degrees(math.atan(along[1] / along[0]))
+
+
 def stretches(row):
     """First and last index of each stretch of True in a row."""
     edges = np.diff(np.concatenate([[0], row.astype(int), [0]]))

@@ -39,6 +39,7 @@ COARSER = {
     "fracture/eccentric_notch.prm": {"Domain/Cells": "101, 32", "Time/Time step": "0.04"},
     "fracture/half_notched_beam.prm": {"Domain/Cells": "70, 20"},
     "fracture/kalthoff_winkler_3d.prm": {"Time/End time": "3e-5"},
+    "fracture/notched_torsion.prm": {"Domain/Cells": "20, 5, 5", "Time/Time step": "0.05"},
     "fracture/quenched_alumina.prm": {"Domain/Cells": "125, 25", "Time/End time": "0.02", "Output/Write at": ""},
     "fracture/quenched_strip.prm": {"Domain/Cells": "100, 21", "Time/Time step": "2"},
     "papers/bobaru_2012/example_4_paper.prm": {"Domain/Cells": "60, 60"},

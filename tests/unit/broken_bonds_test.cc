@@ -5,6 +5,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/solvers/linear_solver.h>
+
 #include "operator_test_tools.h"
 
 using namespace PeriDeal;
@@ -166,6 +168,56 @@ namespace
         const Problem<2>   cut(settings + cracked, ModelKind::coupled);
         const auto         damage = as_damage(cut.fem->bonds().families());
         EXPECT_LT(gap(whole, cut, [&] { return whole.fem->follow(damage); }), 1e-12) << zone;
+      }
+  }
+
+
+  /**
+   * What flows at rest through a body in which all bonds across a crack have broken, over that with
+   * the crack in the scene, less one; the crack makes it less by a percent and more.
+   */
+  template <int dim>
+  double excess_of_heat(const Settings &settings, const Settings &crack, const ModelKind model)
+  {
+    const std::string    side = dim == 2 ? "top" : "front";
+    const Following<dim> made(settings, model);
+    const Problem<dim>   given(settings + crack, model);
+    const auto           heat = [&](const Problem<dim> &problem) {
+      Vector u = problem.vector();
+      solve_steady(problem.op(), u, 0., 1e-12, 1000);
+      return problem.op().balance(u, 0., true).sides.at(side);
+    };
+    const double whole = heat(made), expected = heat(given);
+    EXPECT_LT(expected, 0.99 * whole);
+    const bool follows = model == ModelKind::coupled ?
+                           made.fem->follow(as_damage(given.fem->bonds().families())) :
+                           made.bonds->follow(as_damage(given.bonds->diffusion_bonds().families()));
+    EXPECT_TRUE(follows);
+    return heat(made) / expected - 1.;
+  }
+
+
+  TEST(BrokenBonds, let_through_as_much_heat_as_a_crack)
+  {
+    const Settings box{{"Domain/Lower corner", "0, 0, 0"},
+                       {"Domain/Upper corner", "0.8, 0.7, 0.6"},
+                       {"Domain/Cells", "8, 7, 6"},
+                       {"Peridynamics/Horizon ratio", "2"},
+                       {"Boundary conditions/Dirichlet", "back: 0; front: 1"},
+                       {"Time/End time", "1"}};
+    const Settings across{{"Boundary conditions/Dirichlet", "bottom: 0; top: 1"}};
+    const Settings plain{{"Peridynamics/Surface correction", "none"}};
+    const Settings alone{{"Peridynamics/Boundary treatment", "none"}};
+    const Settings beside{{"Coupling/Zone", "everywhere"}};
+    const Settings disc{{"Cracks/Polygons", "disc: 0.4, 0.35, 0.35, 0, 0, 1, 0.23"}};
+    const Settings quad{
+      {"Cracks/Polygons", "0.15,0.15,0.25 ; 0.55,0.15,0.25 ; 0.55,0.55,0.25 ; 0.15,0.55,0.25"}};
+    for (const ModelKind model : {ModelKind::peridynamics, ModelKind::coupled})
+      {
+        const Settings more = plain + (model == ModelKind::coupled ? beside : alone);
+        EXPECT_LT(std::abs(excess_of_heat<2>(square + across + more, cracked, model)), 1e-3);
+        for (const Settings &crack : {disc, quad})
+          EXPECT_LT(std::abs(excess_of_heat<3>(box + more, crack, model)), 1e-3);
       }
   }
 

@@ -3,6 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/solvers/linear_solver.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -198,6 +200,85 @@ TEST(ZoneBreaking, crack_made_of_broken_bonds_is_the_prescribed_one)
                           std::max(std::abs(p[0] - 0.35) - 0.2, std::abs(p[1] - 0.35) - 0.2);
                         return std::hypot(outside, p[2] - 0.25);
                       });
+}
+
+
+namespace
+{
+  /** The displacement at rest. */
+  template <int dim>
+  Vector at_rest(const Body<dim> &body)
+  {
+    Vector u, rhs, change;
+    for (Vector *v : {&u, &rhs, &change})
+      body.op().initialize_vector(*v);
+    body.op().distribute(u, 0.);
+    body.op().residual(rhs, u, 0.);
+    LinearSolver(body.op(), 1e-11, 2000).solve(0., 1., change, rhs);
+    u += change;
+    return u;
+  }
+
+
+  /**
+   * Sum of the openings at the nodes beside a crack in a plane normal to the last axis.
+   * @param inside whether a node is beside the crack
+   */
+  template <int dim>
+  double opening(const Body<dim>                               &body,
+                 const Vector                                  &u,
+                 const double                                   level,
+                 const std::function<bool(const Point<dim> &)> &inside)
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
+      {
+        const double above = body.position(i)[dim - 1] - level;
+        if (std::abs(above) < 0.06 && inside(body.position(i)))
+          sum += std::copysign(1., above) * u.local_element(dim * i + dim - 1);
+      }
+    return dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD);
+  }
+
+
+  /** A crack made of broken bonds opens as the one of the scene, and a body without one less. */
+  template <int dim>
+  void check_openings(const std::string                             &entry,
+                      const std::string                             &crack,
+                      const double                                   level,
+                      const std::function<bool(const Point<dim> &)> &inside)
+  {
+    const Settings pulled =
+      breakable<dim>("everywhere", 0.3) +
+      Settings{{"Boundary conditions/Displacement",
+                dim == 2 ? "bottom: 0, 0; top: 0, 0.001" : "back: 0, 0, 0; front: 0, 0, 0.001"}};
+    const Body<dim> given(pulled + Settings{{"Cracks/" + entry, crack}}, ModelKind::coupled);
+    const Body<dim> made(pulled, ModelKind::coupled);
+    const auto      across =
+      pairs_of(given, [](const auto &bond, const auto &, const auto &) { return bond.cut; });
+    ASSERT_FALSE(across.empty());
+    const Vector whole = at_rest(made);
+    made.elements->break_pairs(across, whole, 0.);
+    const double expected = opening(given, at_rest(given), level, inside);
+    EXPECT_GT(expected, 2. * opening(made, whole, level, inside)) << crack;
+    EXPECT_NEAR(opening(made, at_rest(made), level, inside), expected, 5e-3 * expected) << crack;
+  }
+} // namespace
+
+
+TEST(ZoneBreaking, crack_made_of_broken_bonds_opens_as_the_prescribed_one)
+{
+  const auto segment = [](const Point<2> &p) { return p[0] > 0.35 && p[0] < 1.05; };
+  check_openings<2>("Segments", "0.35,0.55 ; 1.05,0.55", 0.55, segment);
+  check_openings<3>(
+    "Polygons",
+    "0.15,0.15,0.25 ; 0.55,0.15,0.25 ; 0.55,0.55,0.25 ; 0.15,0.55,0.25",
+    0.25,
+    [](const Point<3> &p) { return std::max(std::abs(p[0] - 0.35), std::abs(p[1] - 0.35)) < 0.2; });
+  check_openings<3>("Polygons",
+                    "disc: 0.4, 0.35, 0.35, 0, 0, 1, 0.23",
+                    0.35,
+                    [](const Point<3> &p) { return std::hypot(p[0] - 0.4, p[1] - 0.35) < 0.23; });
 }
 
 
