@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Faces of cracks that press on each other: at rest, in motion, on several processes.
 
-    contact.py rest | motion | ranks | mistakes
+    contact.py rest | torn | motion | ranks | mistakes
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
 """
@@ -13,7 +13,7 @@ import sys
 from fracture import history
 from scene_test import Comparison, check, check_less, check_message, finish, run_scene
 
-PRESSED, PIECES = "prm/fracture/pressed_crack.prm", "prm/fracture/struck_pieces.prm"
+PRESSED, PIECES, TORN = (f"prm/fracture/{name}.prm" for name in ("pressed_crack", "struck_pieces", "torn_and_pressed"))
 QUIET = {"Output/Fields": "none"}
 MODELS = ("peridynamics", "coupled")
 FLAT, OBLIQUE = "-0.3,0.01 ; 0.3,0.01", "-0.26,-0.15 ; 0.26,0.15"
@@ -51,6 +51,22 @@ def rest():
         table.add(f"{model}: force of the pulled plate over that without contact", force(pulled, model) / force(without, model), 1, relative=1e-5)  # measured: 5e-6; nodes beside the ends
     elements = run_scene(PRESSED, {**QUIET, **OPEN, "Models": "finite elements"})
     check(any("pass through each other" in note for note in elements.summary["notes"]), "finite elements: a note on faces that pass through each other")
+    table.show()
+
+
+def torn():
+    """What breaking bonds have left bears pressure nearly as the whole plate, and no tension."""
+    table = Comparison("A plate that is torn and pressed")
+    for model in MODELS:
+        only = {**QUIET, "Models": model}
+        run = run_scene(TORN, only)
+        whole = run_scene(TORN, {**only, "Cracks/Segments": "", "Material/Fracture energy": "1", "Coupling/Zone": "everywhere",
+                                 "Boundary conditions/Displacement": "bottom: 0, 0 ; top: 0, -0.015*t", "Time/End time": "1", "Output/Write at": "1"})
+        forces = dict(history(run, "force on top in y", model=model))
+        table.add_limit(f"{model}: what is left of the strength", abs(forces[1.0]) / max(forces.values()), 2e-3)  # measured: 1e-3 and 0
+        table.add(f"{model}: force of the pressed halves over that of the whole plate", -forces[2.5] / force(whole, model), 1, absolute=0.1)  # measured: 0.94 and 0.92
+        table.add_limit(f"{model}: energy that contact makes over energy", max(abs(row[1]) for row in history(run, "energy imbalance", model=model))
+                        / max(row[1] for row in history(run, "strain energy", model=model)), 0.02)
     table.show()
 
 
@@ -93,13 +109,14 @@ def ranks():
 def mistakes():
     """What contact cannot do is said."""
     message = run_scene(PRESSED, {"Elasticity/Contact": "perhaps"}, expect_error=True)
+    asked = {"Elasticity/Contact": "true"}
     check_message(message, "Contact", "Elasticity", "perhaps")
     full = {"Models": "peridynamics", "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients"}
     for settings, words in ((full, ("'Kinematics'", "'full'")), ({"Models": "finite elements"}, ("no effect", "'coupled'")),
                             ({"Models": "coupled", "Coupling/Scheme": "blending"}, ("no effect", "'Scheme = exchange'")),
                             ({"Models": "coupled", "Cracks/Mesh": "faces", "Cracks/Segments": "-0.3,0 ; 0.3,0"}, ("no effect", "'faces'"))):
-        check_message(run_scene(PRESSED, settings, expect_error=True), "'Contact' in section 'Elasticity'", *words)
+        check_message(run_scene(PRESSED, {**asked, **settings}, expect_error=True), "'Contact' in section 'Elasticity'", *words)
 
 
-{"rest": rest, "motion": motion, "ranks": ranks, "mistakes": mistakes}[sys.argv[1]]()
+{"rest": rest, "torn": torn, "motion": motion, "ranks": ranks, "mistakes": mistakes}[sys.argv[1]]()
 finish()

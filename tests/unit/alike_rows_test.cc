@@ -40,7 +40,7 @@ namespace
   }
 
 
-  /** Bodies with the matrix of Trilinos and with rows that share values: the same but for memory. */
+  /** Bodies with Trilinos' matrix and with rows that share values: the same but for memory. */
   template <int dim>
   void check_same(const Settings &settings, const ModelKind model, const bool shares)
   {
@@ -75,7 +75,7 @@ TEST(AlikeRows, product_of_finite_elements)
   check_same<1>(many_cells<1>(), ModelKind::finite_elements, true);
   check_same<2>(many_cells<2>(), ModelKind::finite_elements, true);
   check_same<3>(many_cells<3>(), ModelKind::finite_elements, true);
-  // Cells that nothing is left of, two materials, elements of degree 2, and hardly a row like another.
+  // Cells that nothing is left of, two materials, degree 2, and hardly a row like another.
   check_same<2>(many_cells<2>() + Settings{{"Cracks/Segments", "0.101,0.1 ; 0.26,0.21"}},
                 ModelKind::finite_elements,
                 true);

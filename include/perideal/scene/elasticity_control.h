@@ -49,9 +49,9 @@ namespace PeriDeal
 
     /**
      * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there
-     * is none, full kinematics by the linear solver or with `Contact = true`, `Breaking` of a body in motion, a temperature
-     * change that depends on t or is computed for a body in motion, and with another physics any
-     * entry that is given.
+     * is none, full kinematics by the linear solver or with `Contact = true`, `Breaking` of a body
+     * in motion, a temperature change that depends on t or is computed for a body in motion, and
+     * with another physics any entry that is given.
      */
     void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);
   };
