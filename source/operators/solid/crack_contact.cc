@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "change_along.h"
 
@@ -291,7 +292,8 @@ namespace PeriDeal
     if (!any_closed)
       {
         for (const Row &row : rows)
-          row.force = 0.;
+          if (strained)
+            row.force = 0.;
         return;
       }
     for (const Row &row : rows)
@@ -299,8 +301,14 @@ namespace PeriDeal
         row.touches ? row.weight * (gap(row, u.begin()) + (strained ? 0. : row.strained)) : 0.;
     pressures.update_ghost_values();
     for (const Row &row : rows)
-      find_force(row);
-    add_last_forces(y, multiple);
+      {
+        const Tensor<1, dim> last = row.force;
+        find_force(row);
+        for (unsigned int d = 0; d < dim; ++d)
+          y.local_element(dim * row.node + d) += multiple * row.force[d];
+        if (!strained)
+          row.force = last;
+      }
   }
 
 
@@ -326,9 +334,15 @@ namespace PeriDeal
   {
     if (!any_rows)
       return 0.;
-    double sum = 0.;
+    // In the order of nodes: the same digits in a run that is resumed.
+    std::vector<std::pair<unsigned int, double>> energies;
     for (const Row &row : rows)
-      sum += energy_of(row, u.begin());
+      if (const double energy = energy_of(row, u.begin()); energy > 0.)
+        energies.emplace_back(row.node, energy);
+    std::sort(energies.begin(), energies.end());
+    double sum = 0.;
+    for (const auto &[node, energy] : energies)
+      sum += energy;
     return Utilities::MPI::sum(sum, unknowns->get_mpi_communicator());
   }
 
