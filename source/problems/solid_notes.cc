@@ -213,14 +213,16 @@ namespace PeriDeal
           const double first = value["I"], second = value["II"];
           if (first > -some * std::hypot(first, second) || first == 0.)
             continue;
-          const bool knows = run.scene.elasticity.contact &&
-                             (run.name() == to_string(ModelKind::peridynamics) ||
-                              (run.name() == to_string(ModelKind::coupled) &&
-                               run.scene.coupling.exchanges() && !run.scene.cracks.on_faces()));
+          const bool could = run.name() == to_string(ModelKind::peridynamics) ||
+                             (run.name() == to_string(ModelKind::coupled) &&
+                              run.scene.coupling.exchanges() && !run.scene.cracks.on_faces()),
+                     knows = could && run.scene.elasticity.contact;
           context.record.notes.push_back(
             run.name() + ": K_I at " + end + " is negative: the faces of the crack " +
             (knows ?
                "press on each other there. It is found as if they bore nothing, and is none of an open crack; K_II is that of faces that slide." :
+             could ?
+               "pass through each other, since contact is off ('Contact = false' or 'Kinematics = full' in section 'Elasticity')." :
                "pass through each other, since nothing is between them here. In 'peridynamics', and in 'coupled' with 'Scheme = exchange' where 'Mesh' in section 'Cracks' is not 'faces', they press on each other ('Contact' in section 'Elasticity')."));
           return;
         }

@@ -65,7 +65,8 @@ namespace PeriDeal
     cut_by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
     assemble();
     this->keep_constant_loads();
-    this->make_contact();
+    if (zone_bonds && body.coupling.exchanges() && !body.cracks.on_faces())
+      this->make_contact();
   }
 
 

@@ -156,9 +156,10 @@ namespace PeriDeal
   {
     const Nodes<dim>                &nodes  = solid.families.nodes();
     const std::vector<unsigned int> &losing = breakage.nodes_at_work();
-    double                           hinder = 0.;
-    if ((!nonlinear() && (!solid.rows.has_lattice() || solid.thermal.any())) ||
-        losing.size() > 0.1 * nodes.n_owned())
+    const double n_losing = Utilities::MPI::sum(1. * losing.size(), nodes.communicator());
+    double       hinder   = n_losing > 0.1 * nodes.n_global() ? 1. : 0.;
+    if (nonlinear() ? solid.beyond != nullptr :
+                      !solid.rows.has_lattice() || solid.thermal.any())
       hinder = 1.;
     if (solid.beyond) // tau of these changes what their images bear
       for (const unsigned int i : losing)
