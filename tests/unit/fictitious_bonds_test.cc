@@ -206,7 +206,9 @@ TEST(FictitiousBonds, planes_of_symmetry)
                                  full,
                                  Settings{{"Material/Thermal expansion", "0.001"},
                                           {"Elasticity/Temperature change", "3 + x*x"}},
-                                 Settings{{"Cracks/Segments", "-0.21,0.412 ; 0.21,0.412"}},
+                                 // Half a body knows the normals of faces on one side only.
+                                 Settings{{"Cracks/Segments", "-0.21,0.412 ; 0.21,0.412"},
+                                          {"Elasticity/Contact", "false"}},
                                  Settings{{"Material/Phases/Regions", "stiff: abs(x) > 0.6"},
                                           {"Material/Phases/Young modulus", "stiff: 30"},
                                           {"Material/Phases/Poisson ratio", "stiff: 0.1"}}})
