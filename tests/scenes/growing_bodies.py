@@ -13,7 +13,7 @@ SCENE = "prm/elasticity/growing_crack.prm"
 FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 PER_LENGTH = 1e4 * 0.01 ** 2 / 2 / (1 - 0.3 ** 2)
 INTENSITY = (PER_LENGTH * 1e4) ** 0.5
-MOTION = {"Elasticity/Solver": "dynamics", "Material/Density": "1.0", "Time/Time step": "auto", "Time/End time": "0.04", "Output/Write at": "0, 0.02, 0.04",
+MOTION = {"Elasticity/Solver": "dynamics", "Elasticity/Contact": "false", "Material/Density": "1.0", "Time/Time step": "auto", "Time/End time": "0.04", "Output/Write at": "0, 0.02, 0.04",
           "Cracks/Growth": "2: 0.01, 40,0", "Boundary conditions/Displacement": "bottom: 0, -0.005*(1-exp(-(200*t)^2)) ; top: 0, 0.005*(1-exp(-(200*t)^2))"}
 
 

@@ -107,7 +107,7 @@ namespace
     EXPECT_LT(forces_at(body, moved(body, normal)).linfty_norm(), 1e-12 * most);
     const Vector slid = forces_at(body, moved(body, tangent));
     if (dim == 2)
-      EXPECT_LT(largest_inside(body, slid), 1e-4 * most); // families reach to sides
+      EXPECT_LT(largest_inside(body, slid), 3e-4 * most); // normals are smoothed from sides on
     EXPECT_LT(slid.linfty_norm(), 0.1 * most);            // beside sides families are cut
     for (Vector motion : body.op().near_null_space())
       {

@@ -208,7 +208,9 @@ TEST(ElasticOperator, symmetric_and_without_resultant)
   check_operator<2>(graded + Settings{{"Domain/Cells", "8, 6"}}, ModelKind::finite_elements);
   check_operator<2>({{"Domain/Cells", "8, 6"}, {"Elasticity/Model", "bond-based"}},
                     ModelKind::peridynamics);
-  check_operator<2>({{"Domain/Cells", "8, 6"}, {"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}},
+  check_operator<2>({{"Domain/Cells", "8, 6"},
+                     {"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"},
+                     {"Elasticity/Contact", "false"}},
                     ModelKind::peridynamics);
   check_operator<2>({{"Domain/Cells", "8, 6"}, {"Domain/Nodes", "cell centers"}},
                     ModelKind::peridynamics);
@@ -221,9 +223,10 @@ TEST(ElasticOperator, symmetric_and_without_resultant)
           check_operator<2>(corrected +
                               Settings{{"Domain/Cells", "8, 6"}, {"Material/Poisson ratio", nu}},
                             ModelKind::peridynamics);
-        check_operator<2>(
-          corrected + Settings{{"Domain/Cells", "8, 6"}, {"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}},
-          ModelKind::peridynamics);
+        check_operator<2>(corrected + Settings{{"Domain/Cells", "8, 6"},
+                                               {"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"},
+                                               {"Elasticity/Contact", "false"}},
+                          ModelKind::peridynamics);
         check_operator<3>(corrected + Settings{{"Domain/Cells", "4, 3, 2"}},
                           ModelKind::peridynamics);
       }

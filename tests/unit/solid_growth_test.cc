@@ -19,12 +19,15 @@ namespace PeriDeal
 
   namespace
   {
-    const Settings start{{"Cracks/Segments", "0.3,0.36 ; 0.45,0.38"}};
+    // Which nodes touch depends on what was before.
+    const Settings open{{"Elasticity/Contact", "false"}};
+    const Settings start = open + Settings{{"Cracks/Segments", "0.3,0.36 ; 0.45,0.38"}};
     const Settings growing =
       start + Settings{{"Cracks/Growth", "2: 0.1, 0.45,0.06, 0.6"}, {"Time/End time", "1"}};
     const Settings grown{{"Cracks/Segments", "0.3,0.36 ; 0.675,0.41"}};
-    const Settings square{
-      {"Cracks/Polygons", "0.2,0.2,0.26 ; 0.5,0.2,0.26 ; 0.5,0.5,0.26 ; 0.2,0.5,0.26"}};
+    const Settings square =
+      open +
+      Settings{{"Cracks/Polygons", "0.2,0.2,0.26 ; 0.5,0.2,0.26 ; 0.5,0.5,0.26 ; 0.2,0.5,0.26"}};
     const Settings growing_square =
       square + Settings{{"Cracks/Growth", "2: 0.1, 0.4,0,0, 0.6 ; 3: 0.1, 0.4,0,0, 0.6"},
                         {"Time/End time", "1"}};

@@ -246,7 +246,8 @@ namespace
   void check_openings(const std::string                             &entry,
                       const std::string                             &crack,
                       const double                                   level,
-                      const std::function<bool(const Point<dim> &)> &inside)
+                      const std::function<bool(const Point<dim> &)> &inside,
+                      const double                                   within = 5e-3)
   {
     const Settings pulled =
       breakable<dim>("everywhere", 0.3) +
@@ -261,7 +262,7 @@ namespace
     made.elements->break_pairs(across, whole, 0.);
     const double expected = opening(given, at_rest(given), level, inside);
     EXPECT_GT(expected, 2. * opening(made, whole, level, inside)) << crack;
-    EXPECT_NEAR(opening(made, at_rest(made), level, inside), expected, 5e-3 * expected) << crack;
+    EXPECT_NEAR(opening(made, at_rest(made), level, inside), expected, within * expected) << crack;
   }
 } // namespace
 
@@ -275,10 +276,12 @@ TEST(ZoneBreaking, crack_made_of_broken_bonds_opens_as_the_prescribed_one)
     "0.15,0.15,0.25 ; 0.55,0.15,0.25 ; 0.55,0.55,0.25 ; 0.15,0.55,0.25",
     0.25,
     [](const Point<3> &p) { return std::max(std::abs(p[0] - 0.35), std::abs(p[1] - 0.35)) < 0.2; });
-  check_openings<3>("Polygons",
-                    "disc: 0.4, 0.35, 0.35, 0, 0, 1, 0.23",
-                    0.35,
-                    [](const Point<3> &p) { return std::hypot(p[0] - 0.4, p[1] - 0.35) < 0.23; });
+  check_openings<3>(
+    "Polygons",
+    "disc: 0.4, 0.35, 0.35, 0, 0, 1, 0.23",
+    0.35,
+    [](const Point<3> &p) { return std::hypot(p[0] - 0.4, p[1] - 0.35) < 0.23; },
+    0.1); // all of its edge, 2.3 cells from the middle, is within cells
 }
 
 
