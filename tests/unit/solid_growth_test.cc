@@ -21,13 +21,12 @@ namespace PeriDeal
   {
     // Which nodes touch depends on what was before.
     const Settings open{{"Elasticity/Contact", "false"}};
-    const Settings start = open + Settings{{"Cracks/Segments", "0.3,0.36 ; 0.45,0.38"}};
+    const Settings start{{"Cracks/Segments", "0.3,0.36 ; 0.45,0.38"}};
     const Settings growing =
       start + Settings{{"Cracks/Growth", "2: 0.1, 0.45,0.06, 0.6"}, {"Time/End time", "1"}};
     const Settings grown{{"Cracks/Segments", "0.3,0.36 ; 0.675,0.41"}};
-    const Settings square =
-      open +
-      Settings{{"Cracks/Polygons", "0.2,0.2,0.26 ; 0.5,0.2,0.26 ; 0.5,0.5,0.26 ; 0.2,0.5,0.26"}};
+    const Settings square{
+      {"Cracks/Polygons", "0.2,0.2,0.26 ; 0.5,0.2,0.26 ; 0.5,0.5,0.26 ; 0.2,0.5,0.26"}};
     const Settings growing_square =
       square + Settings{{"Cracks/Growth", "2: 0.1, 0.4,0,0, 0.6 ; 3: 0.1, 0.4,0,0, 0.6"},
                         {"Time/End time", "1"}};
@@ -96,7 +95,7 @@ namespace PeriDeal
     {
       SCOPED_TRACE(what + ", " + std::to_string(dim) + "D, " + to_string(model));
       constexpr double tolerance = 1e-12;
-      const Settings   base      = box<dim>() + settings;
+      const Settings   base      = box<dim>() + settings + open;
       const Body<dim>  body(base + (dim == 3 ? growing_square : growing), model),
         whole(base + (dim == 3 ? square : start), model),
         built(base + (dim == 3 ? grown_square : grown), model);
@@ -157,7 +156,7 @@ namespace PeriDeal
       for (const Settings &more : {Settings(), full})
         for (const auto &crack : cracks)
           {
-            const Settings base = box<2>() + mirror + nodes + more;
+            const Settings base = box<2>() + mirror + nodes + more + open;
             const Body<2>  body(
               base + Settings{{"Cracks/Segments", crack[0]}, {"Cracks/Growth", crack[1]}},
               ModelKind::peridynamics),
@@ -210,8 +209,8 @@ namespace PeriDeal
       EXPECT_NEAR(body.op().energy_released_by_joining(), 0., 1e-12 * before);
       EXPECT_GT(body.op().energy_released_by_growth(), 1e-3 * before);
     };
-    check(Body<2>(box<2>() + zone + growing, ModelKind::coupled));
-    check(Body<3>(box<3>() + zone + growing_square, ModelKind::coupled));
+    check(Body<2>(box<2>() + zone + open + growing, ModelKind::coupled));
+    check(Body<3>(box<3>() + zone + open + growing_square, ModelKind::coupled));
   }
 
 
@@ -227,7 +226,7 @@ namespace PeriDeal
     for (const char *const zone : {"cracks: 1", "cracks: 0.4"})
       for (const Settings &more : {Settings(), warm})
         {
-          const Settings base = mesh + more + Settings{{"Coupling/Zone", zone}};
+          const Settings base = mesh + more + open + Settings{{"Coupling/Zone", zone}};
           const Body<2>  body(base + growing, ModelKind::coupled),
             built(base + grown, ModelKind::coupled);
           const auto n_bonds = body.op().size().bonds;
@@ -280,8 +279,8 @@ namespace PeriDeal
   {
     for (const Settings &nodes : {centers, vertices})
       {
-        const Body<2> body(box<2>() + nodes + growing, ModelKind::peridynamics),
-          built(box<2>() + nodes + grown, ModelKind::peridynamics);
+        const Body<2> body(box<2>() + nodes + open + growing, ModelKind::peridynamics),
+          built(box<2>() + nodes + open + grown, ModelKind::peridynamics);
         grow(body, body.values(bumpy_vector<2>));
         const std::vector<double> a = body.states->breaking().damage(),
                                   b = built.states->breaking().damage();
