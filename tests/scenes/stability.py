@@ -102,6 +102,7 @@ set Dimension = 1
 set Models = peridynamics
 subsection Elasticity
   set Solver = dynamics
+  set Contact = false
 end
 subsection Material
   set Young modulus = 100
