@@ -40,6 +40,7 @@ COARSER = {
     "fracture/half_notched_beam.prm": {"Domain/Cells": "70, 20"},
     "fracture/kalthoff_winkler_3d.prm": {"Time/End time": "3e-5"},
     "fracture/notched_torsion.prm": {"Domain/Cells": "20, 5, 5", "Time/Time step": "0.05"},
+    "fracture/torn_and_pressed.prm": {"Domain/Cells": "20, 20"},
     "fracture/quenched_alumina.prm": {"Domain/Cells": "125, 25", "Time/End time": "0.02", "Output/Write at": ""},
     "fracture/quenched_strip.prm": {"Domain/Cells": "100, 21", "Time/Time step": "2"},
     "papers/bobaru_2012/example_4_paper.prm": {"Domain/Cells": "60, 60"},

@@ -158,8 +158,7 @@ namespace PeriDeal
     const std::vector<unsigned int> &losing = breakage.nodes_at_work();
     const double n_losing = Utilities::MPI::sum(1. * losing.size(), nodes.communicator());
     double       hinder   = n_losing > 0.1 * nodes.n_global() ? 1. : 0.;
-    if (nonlinear() ? solid.beyond != nullptr :
-                      !solid.rows.has_lattice() || solid.thermal.any())
+    if (nonlinear() ? solid.beyond != nullptr : !solid.rows.has_lattice() || solid.thermal.any())
       hinder = 1.;
     if (solid.beyond) // tau of these changes what their images bear
       for (const unsigned int i : losing)
@@ -290,17 +289,17 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &) \
-    const;                                                                                         \
-  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const; \
-  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);     \
-  template double             StateOperator<dim>::contact_family(const unsigned int,               \
-                                                     std::vector<FacingBond<dim>> &) const;        \
-  template void StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool);              \
-  template void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);               \
-  template void StateOperator<dim>::exchange_bonds(Archive &,                                      \
-                                                   const NodeKeys &,                               \
+#define PERIDEAL_INSTANTIATE(dim)                                                                       \
+  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &)      \
+    const;                                                                                              \
+  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const;      \
+  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);          \
+  template double             StateOperator<dim>::contact_family(const unsigned int,                    \
+                                                     std::vector<FacingBond<dim>> &) const; \
+  template void               StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool);     \
+  template void               StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);      \
+  template void               StateOperator<dim>::exchange_bonds(Archive &,                             \
+                                                   const NodeKeys &,                      \
                                                    const std::function<void()> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -189,11 +189,11 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   protected:
-    void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
-    bool join_zone(const ChangeSet<dim> &change) override;
-    void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
-    void find_loads(Vector &loads, const double t) const override;
-    void surrogate_made() const override;
+    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool   join_zone(const ChangeSet<dim> &change) override;
+    void   apply_change(const ChangeSet<dim> &change, const bool loaded) override;
+    void   find_loads(Vector &loads, const double t) const override;
+    void   surrogate_made() const override;
     double contact_family(const unsigned int            node,
                           std::vector<FacingBond<dim>> &list) const override
     {

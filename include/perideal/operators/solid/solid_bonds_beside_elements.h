@@ -131,8 +131,7 @@ namespace PeriDeal
                        const ThermalStrain    &strain) const;
 
     /** CrackContact::FamilyOf. */
-    double contact_family(const unsigned int            node,
-                          std::vector<FacingBond<dim>> &list) const;
+    double contact_family(const unsigned int node, std::vector<FacingBond<dim>> &list) const;
 
     /** Mark owned nodes with broken bonds, and add what the others give to the trace. */
     void add_to(CrackSideFactors::Sums &sums) const;

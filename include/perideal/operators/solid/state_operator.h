@@ -112,14 +112,14 @@ namespace PeriDeal
       marks_of_surrogate = breakage.n_marks();
     }
 
-    void exchange_bonds(Archive                     &archive,
-                        const NodeKeys              &keys,
-                        const std::function<void()> &at_surrogate) override;
-    void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
-    void find_forces(Vector &y, const Vector &u) const override;
+    void   exchange_bonds(Archive                     &archive,
+                          const NodeKeys              &keys,
+                          const std::function<void()> &at_surrogate) override;
+    void   apply_change(const ChangeSet<dim> &change, const bool loaded) override;
+    void   find_forces(Vector &y, const Vector &u) const override;
     double contact_family(const unsigned int            node,
                           std::vector<FacingBond<dim>> &list) const override;
-    void find_loads(Vector &loads, const double t) const override;
+    void   find_loads(Vector &loads, const double t) const override;
 
   private:
     using SolidOperator<dim>::body;
