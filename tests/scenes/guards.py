@@ -321,13 +321,16 @@ def actions():
 
 
 def findings_of_solvers():
-    """Where solvers notice something by themselves `warn` and `off` go on, too, until nothing is finite."""
+    """Where solvers notice something by themselves `warn` and `off` go on, too, until nothing is finite.
+
+    When that is depends on the last digits of an inverted body: from t = 3.6 to beyond 4 on different processors.
+    """
     scene = PULLED.replace("STEP", "0.0092")
     words = ("'verlet' is stable up to", "the body is inside out", "The energy of the motion is not kept")
     numbers = {}
     for action, ranks in (("warn", 1), ("warn", 2), ("off", 1)):
         what = f"strip that is pulled, {action} on {ranks}"
-        run = run_scene(scene, {"Guards/Action": action, "Output/Fields": "none"}, ranks)
+        run = run_scene(scene, {"Guards/Action": action, "Output/Fields": "none", "Time/End time": "2"}, ranks)
         notes = told_by(run)
         check(run.summary["status"] == "complete" and "guard" not in run.summary, f"{what}: {run.summary['status']}")
         check_told(notes, words if action == "warn" else (), what)
@@ -343,7 +346,7 @@ def findings_of_solvers():
             is_resumed = "resumed" in what
             guard = run.summary.get("guard", {})
             check(run.summary["status"] == "diverged" and guard.get("monitor") == "finite values", f"{what}: {run.summary['status']}, {guard}")
-            check(4 < guard["time"] < 5, f"{what}: at t = {guard['time']}")
+            check(2 < guard["time"] < 8, f"{what}: at t = {guard['time']}")
             check(("resumed at t = 2," in run.stdout) == is_resumed, f"{what}: {run.stdout}")
             told = [line for line in run.stdout.splitlines() if TOLD in line]  # summary.json may be that of an earlier time of output
             check_told(told, words if action == "warn" and not is_resumed else (), what)
