@@ -3,14 +3,8 @@
 
 // This file wants -O3 -ffp-contract=off.
 
+#include <perideal/base/for_all_vectors.h>
 #include <perideal/base/node_loops.h>
-
-// GCC compiles a function marked so for each instruction set, and the first call picks one.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#  define PERIDEAL_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#  define PERIDEAL_CLONES
-#endif
 
 namespace PeriDeal
 {
@@ -22,71 +16,78 @@ namespace PeriDeal
       using Out = double *__restrict__;
       using In  = const double *__restrict__;
 
-      PERIDEAL_CLONES void scale_constant(Out to, In from, const double v, const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void scale_constant(Out               to,
+                                                   In                from,
+                                                   const double      v,
+                                                   const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           to[i] = v * from[i];
       }
 
-      PERIDEAL_CLONES void scale_varying(Out to, In from, In v, const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void scale_varying(Out to, In from, In v, const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           to[i] = v[i] * from[i];
       }
 
-      PERIDEAL_CLONES void combine_constant(Out               y,
-                                            In                u,
-                                            const double      v,
-                                            const double      d,
-                                            const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void combine_constant(Out               y,
+                                                     In                u,
+                                                     const double      v,
+                                                     const double      d,
+                                                     const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           y[i] = v * (d * u[i] - y[i]);
       }
 
-      PERIDEAL_CLONES void combine_varying(Out y, In u, In v, In d, const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void combine_varying(Out y, In u, In v, In d, const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           y[i] = v[i] * (d[i] * u[i] - y[i]);
       }
 
-      PERIDEAL_CLONES void negate_all(Out y, const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void negate_all(Out y, const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           y[i] = -y[i];
       }
 
-      PERIDEAL_CLONES void subtract_all(Out y, In load, const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void subtract_all(Out y, In load, const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           y[i] = load[i] - y[i];
       }
 
-      PERIDEAL_CLONES void advance_all(Out               next,
-                                       In                u,
-                                       In                s,
-                                       In                r,
-                                       const double      a,
-                                       const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void advance_all(Out               next,
+                                                In                u,
+                                                In                s,
+                                                In                r,
+                                                const double      a,
+                                                const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           next[i] = u[i] + a * (s[i] * r[i]);
       }
 
-      PERIDEAL_CLONES void accumulate_all(Out sum, In s, In r, const double a, const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void accumulate_all(Out               sum,
+                                                   In                s,
+                                                   In                r,
+                                                   const double      a,
+                                                   const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           sum[i] += a * (s[i] * r[i]);
       }
 
-      PERIDEAL_CLONES void kick_and_drift_all(Out               v,
-                                              Out               u,
-                                              Out               last,
-                                              In                s,
-                                              In                r,
-                                              const double      a,
-                                              const double      b,
-                                              const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void kick_and_drift_all(Out               v,
+                                                       Out               u,
+                                                       Out               last,
+                                                       In                s,
+                                                       In                r,
+                                                       const double      a,
+                                                       const double      b,
+                                                       const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           {
@@ -96,46 +97,46 @@ namespace PeriDeal
           }
       }
 
-      PERIDEAL_CLONES double weighted_square_of_all(In s, In r, const std::size_t n)
+      /** The sum of term(i), as eight sums of every eighth one, in this order on any machine. */
+      template <typename Term>
+      PERIDEAL_INLINE double sum_in_parts(const std::size_t n, const Term &term)
       {
         constexpr std::size_t n_parts = 8;
         double                sums[n_parts]{};
         std::size_t           i = 0;
         for (; i + n_parts <= n; i += n_parts)
           for (std::size_t k = 0; k < n_parts; ++k)
-            sums[k] += s[i + k] * (r[i + k] * r[i + k]);
+            sums[k] += term(i + k);
         for (; i < n; ++i)
-          sums[i % n_parts] += s[i] * (r[i] * r[i]);
+          sums[i % n_parts] += term(i);
         double all = 0.;
         for (const double sum : sums)
           all += sum;
         return all;
       }
 
-      PERIDEAL_CLONES double square_over_all(In s, In r, const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS double weighted_square_of_all(In s, In r, const std::size_t n)
       {
-        constexpr std::size_t n_parts = 8;
-        double                sums[n_parts]{};
-        std::size_t           i = 0;
-        for (; i + n_parts <= n; i += n_parts)
-          for (std::size_t k = 0; k < n_parts; ++k)
-            sums[k] += s[i + k] > 0. ? r[i + k] * r[i + k] / s[i + k] : 0.;
-        for (; i < n; ++i)
-          sums[i % n_parts] += s[i] > 0. ? r[i] * r[i] / s[i] : 0.;
-        double all = 0.;
-        for (const double sum : sums)
-          all += sum;
-        return all;
+        return sum_in_parts(n, [=](const std::size_t i) PERIDEAL_INLINED {
+          return s[i] * (r[i] * r[i]);
+        });
       }
 
-      PERIDEAL_CLONES void chebyshev_all(Out               last,
-                                         Out               sum,
-                                         In                now,
-                                         In                s,
-                                         In                r,
-                                         const double      a,
-                                         const double      c,
-                                         const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS double square_over_all(In s, In r, const std::size_t n)
+      {
+        return sum_in_parts(n, [=](const std::size_t i) PERIDEAL_INLINED {
+          return s[i] > 0. ? r[i] * r[i] / s[i] : 0.;
+        });
+      }
+
+      PERIDEAL_FOR_ALL_VECTORS void chebyshev_all(Out               last,
+                                                  Out               sum,
+                                                  In                now,
+                                                  In                s,
+                                                  In                r,
+                                                  const double      a,
+                                                  const double      c,
+                                                  const std::size_t n)
       {
         for (std::size_t i = 0; i < n; ++i)
           {
@@ -145,15 +146,15 @@ namespace PeriDeal
           }
       }
 
-      PERIDEAL_CLONES void rkc_all(Out               next,
-                                   In                u,
-                                   In                last,
-                                   In                before,
-                                   In                s,
-                                   In                r,
-                                   In                rate,
-                                   const double     *coefficients,
-                                   const std::size_t n)
+      PERIDEAL_FOR_ALL_VECTORS void rkc_all(Out               next,
+                                            In                u,
+                                            In                last,
+                                            In                before,
+                                            In                s,
+                                            In                r,
+                                            In                rate,
+                                            const double     *coefficients,
+                                            const std::size_t n)
       {
         const double a = coefficients[0], b = coefficients[1], c = coefficients[2],
                      d = coefficients[3], e = coefficients[4];

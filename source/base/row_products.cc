@@ -5,14 +5,7 @@
 
 #include "row_products.h"
 
-// GCC compiles a function marked so for each instruction set, and the first call picks one.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-  !defined(__SANITIZE_ADDRESS__)
-#  define PERIDEAL_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#  define PERIDEAL_CLONES
-#endif
-#define PERIDEAL_INLINE inline __attribute__((always_inline))
+#include <perideal/base/for_all_vectors.h>
 
 namespace PeriDeal
 {
@@ -58,39 +51,6 @@ namespace PeriDeal
           }
       }
 
-      PERIDEAL_CLONES void along_1(double           *y,
-                                   const double     *x,
-                                   const int        *offsets,
-                                   const double     *coefficients,
-                                   const unsigned    n_offsets,
-                                   const std::size_t begin,
-                                   const std::size_t end)
-      {
-        along<1>(y, x, offsets, coefficients, n_offsets, begin, end);
-      }
-
-      PERIDEAL_CLONES void along_2(double           *y,
-                                   const double     *x,
-                                   const int        *offsets,
-                                   const double     *coefficients,
-                                   const unsigned    n_offsets,
-                                   const std::size_t begin,
-                                   const std::size_t end)
-      {
-        along<2>(y, x, offsets, coefficients, n_offsets, begin, end);
-      }
-
-      PERIDEAL_CLONES void along_3(double           *y,
-                                   const double     *x,
-                                   const int        *offsets,
-                                   const double     *coefficients,
-                                   const unsigned    n_offsets,
-                                   const std::size_t begin,
-                                   const std::size_t end)
-      {
-        along<3>(y, x, offsets, coefficients, n_offsets, begin, end);
-      }
-
       template <unsigned int n>
       PERIDEAL_INLINE void one(double *__restrict__ y,
                                const double *__restrict__ x,
@@ -113,18 +73,21 @@ namespace PeriDeal
     } // namespace
 
 
-    void along_rows(const unsigned int n,
-                    double            *y,
-                    const double      *x,
-                    const int         *offsets,
-                    const double      *coefficients,
-                    const unsigned int n_offsets,
-                    const std::size_t  begin,
-                    const std::size_t  end)
+    PERIDEAL_FOR_ALL_VECTORS void along_rows(const unsigned int n,
+                                             double            *y,
+                                             const double      *x,
+                                             const int         *offsets,
+                                             const double      *coefficients,
+                                             const unsigned int n_offsets,
+                                             const std::size_t  begin,
+                                             const std::size_t  end)
     {
-      (n == 1 ? along_1 :
-       n == 2 ? along_2 :
-                along_3)(y, x, offsets, coefficients, n_offsets, begin, end);
+      if (n == 1)
+        along<1>(y, x, offsets, coefficients, n_offsets, begin, end);
+      else if (n == 2)
+        along<2>(y, x, offsets, coefficients, n_offsets, begin, end);
+      else
+        along<3>(y, x, offsets, coefficients, n_offsets, begin, end);
     }
 
     void one_row(const unsigned int   n,

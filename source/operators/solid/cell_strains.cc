@@ -5,23 +5,18 @@
 
 #include "cell_strains.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-  !defined(__SANITIZE_ADDRESS__)
-#  define PERIDEAL_FOR_ALL_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#  define PERIDEAL_FOR_ALL_VECTORS
-#endif
+#include <perideal/base/for_all_vectors.h>
 
 namespace PeriDeal
 {
   namespace
   {
     template <unsigned int dim>
-    inline __attribute__((always_inline)) void squares_of(const double *__restrict__ u,
-                                                          const std::uint32_t *corners,
-                                                          const double        *slopes,
-                                                          const unsigned int   n,
-                                                          double *__restrict__ squares)
+    PERIDEAL_INLINE void squares_of(const double *__restrict__ u,
+                                    const std::uint32_t *corners,
+                                    const double        *slopes,
+                                    const unsigned int   n,
+                                    double *__restrict__ squares)
     {
       constexpr unsigned int n_edges = 1u << (dim - 1);             // of a cell, in each direction
       double                 gradients[dim][dim * n_cells_at_once]; // [e][dim k + d]: du_d/dx_e

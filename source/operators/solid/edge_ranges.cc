@@ -3,23 +3,19 @@
 
 #include "edge_ranges.h"
 
+#include <perideal/base/for_all_vectors.h>
+
 // Minimum and maximum are exact: any instruction set finds the same numbers.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-  !defined(__SANITIZE_ADDRESS__)
-#  define PERIDEAL_FOR_ALL_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#  define PERIDEAL_FOR_ALL_VECTORS
-#endif
 
 namespace PeriDeal
 {
   namespace
   {
     template <unsigned int n_row>
-    inline __attribute__((always_inline)) void extend_rows(const double *__restrict__ from,
-                                                           const double *__restrict__ to,
-                                                           const unsigned int n_rows,
-                                                           double *__restrict__ ranges)
+    PERIDEAL_INLINE void extend_rows(const double *__restrict__ from,
+                                     const double *__restrict__ to,
+                                     const unsigned int n_rows,
+                                     double *__restrict__ ranges)
     {
       for (unsigned int row = 0; row < n_rows; ++row)
         {
