@@ -22,7 +22,7 @@ namespace PeriDeal
   }
 
 
-  /** Calls visit(n, whether it is a sine), and visit(4, false) for r^2. */
+  /** Calls visit(n, whether it is a sine); r^2 comes after these. */
   template <typename Visit>
   void HalfPowerFit::for_each_term(const Visit &visit) const
   {

@@ -13,7 +13,7 @@ import sys
 from fracture import history
 from scene_test import Comparison, check, check_less, check_message, finish, run_scene
 
-PRESSED, PIECES, TORN = (f"prm/fracture/{name}.prm" for name in ("pressed_crack", "struck_pieces", "torn_and_pressed"))
+PRESSED, PIECES, TORN = "prm/fracture/pressed_crack.prm", "prm/fracture/struck_pieces.prm", "prm/fracture/torn_and_pressed.prm"
 QUIET = {"Output/Fields": "none"}
 MODELS = ("peridynamics", "coupled")
 FLAT, OBLIQUE = "-0.3,0.01 ; 0.3,0.01", "-0.26,-0.15 ; 0.26,0.15"

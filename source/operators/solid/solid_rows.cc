@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "../lattice/state_lattice.h"
+#include "change_along.h"
 
 namespace PeriDeal
 {
@@ -39,24 +40,6 @@ namespace PeriDeal
            << ", and 'Horizon' in section 'Peridynamics' is " << horizon << ": take "
            << enough * size << " or more, or smaller cells there.";
       return text.str();
-    }
-
-
-    /** p . (u_j - u_i) */
-    template <int dim>
-    double product(const Tensor<1, dim> &p,
-                   const double         *u,
-                   const unsigned int    i,
-                   const unsigned int    j)
-    {
-      const double *const a = u + static_cast<std::size_t>(dim) * i, *const b =
-                                                                       u + static_cast<std::size_t>(
-                                                                             dim) *
-                                                                             j;
-      double sum = 0.;
-      for (unsigned int d = 0; d < dim; ++d)
-        sum += p[d] * (b[d] - a[d]);
-      return sum;
     }
 
 
@@ -403,11 +386,11 @@ namespace PeriDeal
         if (packs)
           for_each_packed(i,
                           [&](const std::size_t k, const unsigned int j, const LatticeBond &bond) {
-                            sum += volumes_of(i, k) * product(bond.moment, u, i, j);
+                            sum += volumes_of(i, k) * change_along(bond.moment, u, i, j);
                           });
         else
           for (std::size_t k = begin_of(i); k < end_of(i); ++k)
-            sum += product(moments[k], u, i, neighbors[k]);
+            sum += change_along(moments[k], u, i, neighbors[k]);
         tau[i] = laws.tension(i, sum);
       }
   }
@@ -431,7 +414,7 @@ namespace PeriDeal
                                                        const LatticeBond &bond) {
                             const double stiffness = (own + laws.stiffness(j)) / bond.weight;
                             const double size =
-                              stiffness * product(bond.moment, u, i, j) + tension(i, j);
+                              stiffness * change_along(bond.moment, u, i, j) + tension(i, j);
                             force += (size * volumes_of(i, k)) * bond.moment;
                           });
         else
@@ -439,7 +422,7 @@ namespace PeriDeal
             {
               const unsigned int    j = neighbors[k];
               const Tensor<1, dim> &p = moments[k];
-              force += (springs[k] * product(p, u, i, j) + tension(i, j)) * p;
+              force += (springs[k] * change_along(p, u, i, j) + tension(i, j)) * p;
             }
         for (unsigned int d = 0; d < dim; ++d)
           y[static_cast<std::size_t>(dim) * i + d] = -force[d];
@@ -455,7 +438,7 @@ namespace PeriDeal
     const double limit = (1. - 1e-9) * stretch;
     bool         any   = false;
     for_each_packed(i, [&](const std::size_t, const unsigned int j, const LatticeBond &bond) {
-      any = any || product(bond.moment, u, i, j) > limit * bond.weight;
+      any = any || change_along(bond.moment, u, i, j) > limit * bond.weight;
     });
     return any;
   }

@@ -80,7 +80,7 @@ namespace PeriDeal
      */
     void add_forces(Vector &y, const Vector &u, const bool strained, const double multiple) const;
 
-    /** Add a multiple of what add_forces() gave at last. Not collective. */
+    /** Add a multiple of what add_forces() gave at last, with thermal strains. Not collective. */
     void add_last_forces(Vector &y, const double multiple) const;
 
     /** The energy of all nodes that touch at u, found or not. Collective. */

@@ -53,7 +53,8 @@ namespace PeriDeal
 
     /**
      * Renew normals where these owned nodes have lost or got bonds. Returns the owned nodes whose
-     * normals may have changed, in ascending order. Collective.
+     * normals may have changed, in ascending order. Where some are whole again all nodes have to be
+     * renewed. Collective.
      */
     std::vector<unsigned int> renew(const std::vector<unsigned int> &of_nodes);
 

@@ -42,8 +42,7 @@ namespace PeriDeal
       return *coupled;
     }
 
-    /** As Coupling::breakable(). */
-    Coupling<dim> &breakable()
+    Coupling<dim> &coupling()
     {
       return *coupled;
     }
