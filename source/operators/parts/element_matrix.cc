@@ -5,9 +5,29 @@
 
 #include <perideal/operators/parts/element_matrix.h>
 
+#include <cmath>
+
 namespace PeriDeal
 {
   using namespace dealii;
+
+  template <int dim>
+  std::vector<std::uint64_t> places_on_lattice(const std::vector<Point<dim>> &positions,
+                                               const Domain<dim>             &lattice)
+  {
+    constexpr double           finer = 8.;
+    constexpr int              bits  = 21;
+    std::vector<std::uint64_t> places(positions.size(), 0);
+    for (unsigned int i = 0; i < positions.size(); ++i)
+      for (unsigned int d = dim; d-- > 0;)
+        {
+          const double share =
+            (positions[i][d] - lattice.lower[d]) / (lattice.upper[d] - lattice.lower[d]);
+          places[i] = (places[i] << bits) + std::lround(finer * lattice.cells[d] * share);
+        }
+    return places;
+  }
+
 
   template <int dim, int n>
   void ElementMatrix<dim, n>::reinit(const Pattern &pattern)
@@ -101,6 +121,12 @@ namespace PeriDeal
   }
 
 
+  template std::vector<std::uint64_t> places_on_lattice<1>(const std::vector<Point<1>> &,
+                                                           const Domain<1> &);
+  template std::vector<std::uint64_t> places_on_lattice<2>(const std::vector<Point<2>> &,
+                                                           const Domain<2> &);
+  template std::vector<std::uint64_t> places_on_lattice<3>(const std::vector<Point<3>> &,
+                                                           const Domain<3> &);
   template class ElementMatrix<1, 1>;
   template class ElementMatrix<2, 1>;
   template class ElementMatrix<3, 1>;

@@ -72,6 +72,17 @@ namespace PeriDeal
 
 
   template <int dim>
+  TrilinosWrappers::SparsityPattern ElasticElements<dim>::pattern() const
+  {
+    TrilinosWrappers::SparsityPattern pattern = element_pattern();
+    if (zone_bonds && !breaking)
+      zone_bonds->add_pattern(pattern, true);
+    pattern.compress();
+    return pattern;
+  }
+
+
+  template <int dim>
   void ElasticElements<dim>::find_crack_factors()
   {
     const Vector           layout(nodes);
@@ -317,63 +328,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  template <typename Visit>
-  void ElasticElements<dim>::for_each_load(const double t, const Visit &visit) const
-  {
-    CellData   &data  = *cell_data;
-    const auto &force = body.initial_and_source.body_force;
-    const auto  add   = [&](const auto &values, const auto &formula, const auto side) {
-      for (const unsigned int q : values.quadrature_point_indices())
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const double f = formula(d).value(values.quadrature_point(q), t) * values.JxW(q);
-            for (unsigned int i = 0; i < data.indices.size(); ++i)
-              visit(side, data.unknowns[dim * i + d], d, f * values.shape_value(i, q));
-          }
-    };
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        if (!cell->is_locally_owned() || (force.empty() && !cell->at_boundary()))
-          continue;
-        data.set_indices(cell);
-        if (!force.empty())
-          {
-            data.values.reinit(cell);
-            add(
-              data.values,
-              [&](const unsigned int d) -> const Expression & { return force[d]; },
-              numbers::internal_face_boundary_id);
-          }
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            condition_faces.for_each(
-              body.boundary_conditions.traction,
-              cell,
-              f,
-              data.face_values,
-              [&](const VectorCondition &condition, const auto &values) {
-                add(
-                  values,
-                  [&](const unsigned int d) -> const Expression & { return *condition.values[d]; },
-                  condition.id);
-              });
-      }
-    for (const PartUnknown<dim> &unknown : part_unknowns)
-      for (const VectorCondition &condition : body.boundary_conditions.traction)
-        for (unsigned int d = 0; condition.id == unknown.id && d < dim; ++d)
-          visit(condition.id,
-                dim * nodes->local_to_global(unknown.node) + d,
-                d,
-                unknown.share * condition.values[d]->value(unknown.position, t));
-  }
-
-
-  template <int dim>
   void ElasticElements<dim>::find_loads(Vector &loads, const double t) const
   {
     loads = thermal_loads;
     loads.zero_out_ghost_values();
-    for_each_load(t, [&](const auto, const auto unknown, const unsigned int, const double value) {
+    mechanical.for_each(t, [&](const auto, const auto unknown, const auto, const double value) {
       loads(unknown) += value;
     });
     loads.compress(VectorOperation::add);
@@ -397,10 +356,33 @@ namespace PeriDeal
           sums[side][side / 2] -= reactions.local_element(i) - thermal_loads.local_element(i);
     reactions -= loads;
     conditions->add_reactions(reactions, sums);
-    for_each_load(t, [&](const auto side, const auto, const unsigned int d, const double value) {
+    mechanical.for_each(t, [&](const auto side, const auto, const auto d, const double value) {
       sums[side][d] += value;
     });
     return gather_forces(sums, body, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    if (!breaking)
+      {
+        stiffness.copy_to(matrix, pattern());
+        hold_unknowns(matrix, this->held_unknowns());
+        return;
+      }
+    matrix.reinit(pattern());
+    for_each_own_cell([&](const Cell &cell, CellData &data) {
+      if (cut_by_cracks.is_cut(cell) || zone_bonds->is_parted(cell))
+        return;
+      hanging.add_to(matrix, data.stiffness, data.unknowns);
+    });
+    breaking->bonds.add_between_vertices(matrix);
+    matrix.compress(VectorOperation::add);
+    Vector loose = this->held_unknowns();
+    mark_loose(matrix, stiffness_diagonal, loose);
+    hold_unknowns(matrix, loose);
   }
 
 
@@ -463,16 +445,17 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template void         ElasticElements<dim>::assemble();                                       \
-  template bool         ElasticElements<dim>::join_zone(const ChangeSet<dim> &);                \
-  template void         ElasticElements<dim>::apply_change(const ChangeSet<dim> &, const bool); \
-  template void         ElasticElements<dim>::set_temperature_change(const Vector &);           \
-  template void         ElasticElements<dim>::find_loads(Vector &, const double) const;         \
-  template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;       \
-  template void         ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &, \
-                                                      const bool) const;                \
-  template double       ElasticElements<dim>::lowest_remainder() const;                         \
+#define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template void ElasticElements<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &) const; \
+  template void ElasticElements<dim>::assemble();                                                 \
+  template bool ElasticElements<dim>::join_zone(const ChangeSet<dim> &);                          \
+  template void ElasticElements<dim>::apply_change(const ChangeSet<dim> &, const bool);           \
+  template void ElasticElements<dim>::set_temperature_change(const Vector &);                     \
+  template void ElasticElements<dim>::find_loads(Vector &, const double) const;                   \
+  template ForceBalance ElasticElements<dim>::forces(const Vector &, const double) const;         \
+  template void         ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &,   \
+                                                      const bool) const;                  \
+  template double       ElasticElements<dim>::lowest_remainder() const;                           \
   template OperatorSize ElasticElements<dim>::size() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -23,10 +23,6 @@ namespace PeriDeal
                dealii::QGauss<dim>(fe.degree + 1),
                dealii::update_values | dealii::update_gradients | dealii::update_quadrature_points |
                  dealii::update_JxW_values)
-      , face_values(fe,
-                    dealii::QGauss<dim - 1>(fe.degree + 1),
-                    dealii::update_values | dealii::update_quadrature_points |
-                      dealii::update_JxW_values)
       , stiffness(dim * fe.n_dofs_per_cell(), dim * fe.n_dofs_per_cell())
       , thermal(dim * fe.n_dofs_per_cell())
       , mass(fe.n_dofs_per_cell())
@@ -60,7 +56,6 @@ namespace PeriDeal
     }
 
     dealii::FEValues<dim>      values;
-    dealii::FEFaceValues<dim>  face_values;
     dealii::FullMatrix<double> stiffness;
     dealii::Vector<double>     thermal, mass, diagonal, volume; // diagonal: of the mass
     double                     thermal_energy = 0.;

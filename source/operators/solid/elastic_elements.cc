@@ -6,6 +6,7 @@
 #include <deal.II/fe/mapping_q1.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/parts/element_layout.h>
 #include <perideal/operators/parts/event_work.h>
 #include <perideal/operators/solid/elastic_elements.h>
@@ -51,12 +52,14 @@ namespace PeriDeal
                      body.cracks.contact_conductance,
                      [&body] { return body.horizon(); },
                      body.cuts_in_part_at_tips()})
-    , condition_faces(dofs, body.boundary_conditions)
     , hanging(dofs, *nodes, dim)
+    , mechanical(dofs, body, nodes, [this](const auto unknown) {
+      return hanging.is_hanging(unknown);
+    })
   {
     if (zone_bonds && (body.material.fracture_energy || body.material.critical_stretch))
       {
-        breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->breakable(), dofs, body);
+        breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->coupling(), dofs, body);
         this->initialize_vector(force_change);
       }
     find_positions();
@@ -141,10 +144,7 @@ namespace PeriDeal
                       on_sides.push_back({node, part.id, positions[node]});
                 }
       }
-    part_unknowns = unknowns_of_parts(dofs, body.boundary_conditions, [&](const auto node) {
-      return hanging.is_hanging(dim * node);
-    });
-    for (const PartUnknown<dim> &unknown : part_unknowns)
+    for (const PartUnknown<dim> &unknown : mechanical.part_unknowns())
       on_sides.push_back({unknown.node, unknown.id, unknown.position});
     const std::vector<Point<dim>> own(positions.begin(),
                                       positions.begin() + nodes->locally_owned_size());
@@ -425,6 +425,50 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ElasticElements<dim>::share_rows_for_steps() const
+  {
+    if (!this->forgoes_diagonal || stiffness.was_asked_to_share() || hanging.any() ||
+        !body.domain.has_lattice() || (zone_bonds && !breaking && this->has_growing_cracks()))
+      return;
+    stiffness.share_rows(nodes, places_on_lattice(positions, body.domain));
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::multiply(Vector &y, const Vector &x) const
+  {
+    share_rows_for_steps();
+    const bool is_known = x.has_ghost_elements();
+    if (breaking || stiffness.shares_rows())
+      x.update_ghost_values();
+    stiffness.multiply(y, x);
+    if (breaking)
+      breaking->bonds.add_forces(y, x);
+    x.set_ghost_state(is_known);
+    hanging.set(y, 0.); // the nodes they follow from have all of it
+  }
+
+
+  template <int dim>
+  Spectrum ElasticElements<dim>::spectrum() const
+  {
+    std::vector<double> row_sums(mass.locally_owned_size(), 0.);
+    stiffness.for_each_entry([&](const unsigned int row, const auto, const double value) {
+      row_sums[row] += std::abs(value);
+    });
+    if (breaking)
+      breaking->bonds.add_row_sums(row_sums);
+    for (const unsigned int i : hanging.owned())
+      row_sums[i] = 0.;
+    double bound = 0.;
+    for (unsigned int i = 0; i < row_sums.size(); ++i)
+      bound = std::max(bound, row_sums[i] / mass.local_element(i));
+    bound = Utilities::MPI::max(bound, dofs.get_communicator());
+    return {bound, sharp_bound(*this, bound, [&](Vector &vector) { this->fill_noise(vector); })};
+  }
+
+
+  template <int dim>
   double ElasticElements<dim>::energy(const Vector &u) const
   {
     Vector image;
@@ -433,12 +477,14 @@ namespace PeriDeal
     return 0.5 * (u * image) - u * thermal_loads + thermal_energy + this->contact_energy(u);
   }
 
+
   template <int dim>
   const std::shared_ptr<const Utilities::MPI::Partitioner> &ElasticElements<dim>::node_layout()
     const
   {
     return nodes;
   }
+
 
   template class ElasticElements<1>;
   template class ElasticElements<2>;

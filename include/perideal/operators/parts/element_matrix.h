@@ -6,11 +6,21 @@
 #include <perideal/base/alike_rows.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/operators/parts/hanging_nodes.h>
+#include <perideal/scene/domain.h>
 
 #include <memory>
 
 namespace PeriDeal
 {
+  /**
+   * Where nodes are on a lattice, finer than the cells' since cells of higher degree have nodes
+   * inside, as AlikeRows wants to know it. Not collective.
+   */
+  template <int dim>
+  std::vector<std::uint64_t> places_on_lattice(const std::vector<dealii::Point<dim>> &positions,
+                                               const Domain<dim>                     &lattice);
+
+
   /**
    * The matrix of elements with n unknowns at each node, interleaved: at first one of Trilinos,
    * which solvers want; where there are only products to come, as in explicit steps, rows that

@@ -7,11 +7,11 @@
 
 #include <perideal/laws/elasticity.h>
 #include <perideal/mesh/cell_search.h>
-#include <perideal/operators/parts/condition_faces.h>
 #include <perideal/operators/parts/crack_side_factors.h>
 #include <perideal/operators/parts/cut_cells.h>
 #include <perideal/operators/parts/element_matrix.h>
 #include <perideal/operators/parts/hanging_nodes.h>
+#include <perideal/operators/solid/element_loads.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid/solid_operator.h>
 #include <perideal/operators/solid/zone_breaking.h>
@@ -268,16 +268,13 @@ namespace PeriDeal
     void              throw_if_isolated() const;
     template <typename Visit>
     void for_each_own_cell(const Visit &visit) const;
-    template <typename Visit>
-    void for_each_load(const double t, const Visit &visit) const;
 
     const dealii::DoFHandler<dim>                 &dofs;
     std::unique_ptr<SolidBondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     std::unique_ptr<ZoneBreaking<dim>>             breaking;   // null: no bonds may break
     CutCells<dim>                                  cut_by_cracks;
-    ConditionFaces<dim>                            condition_faces;
     const HangingNodes<dim>                        hanging;
-    std::vector<PartUnknown<dim>>                  part_unknowns; // of regions and points
+    const ElementLoads<dim>                        mechanical;
     std::vector<dealii::Point<dim>>                positions;
     mutable ElementMatrix<dim, dim>                stiffness;
     std::unique_ptr<CellData>                      cell_data;
