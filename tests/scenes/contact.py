@@ -34,16 +34,16 @@ def rest():
         free = run_scene(PRESSED, {**lattice, **OPEN, "Cracks/Segments": FLAT})
         for model in MODELS:
             case = f"{model}, {cells} cells, m = {m}"
-            # Measured: 1.0032 to 1.0045, 0.9951 to 0.9982.
+            # Measured: 1.0040 to 1.0071, 0.9967 to 0.9986.
             table.add(f"{case}: force over that of the whole plate", force(flat, model) / force(whole, model), 1, absolute=0.008)
             table.add_limit(f"{case}: the same without contact", force(free, model) / force(whole, model), 0.88)
         oblique = run_scene(PRESSED, lattice)
         stress, crack = force(oblique, "coupled") / 2, 0.3
-        if "80" in cells:
+        if "80" in cells:  # this plate is not large: finite elements on 160 x 160 cells, without contact, have 1.025 and 1.033
             exact = stress * math.sin(math.pi / 3) * math.cos(math.pi / 3) * math.sqrt(math.pi * crack)
             for end in (1, 2):
                 table.add(f"coupled, {cells} cells, m = {m}: K_II at end {end} over that of a large plate",
-                          -oblique.model("coupled")["stress intensity"][f"crack 1 end {end}"]["II"] / exact, 1, absolute=0.08)  # measured: 0.025 to 0.054
+                          -oblique.model("coupled")["stress intensity"][f"crack 1 end {end}"]["II"] / exact, 1.03, absolute=0.08)  # measured: 0.028 to 0.050, reference above
             check(any("press on each other there" in note for note in oblique.summary["notes"]), "a note on K_I")
     pull = {**QUIET, "Domain/Cells": "40, 40", "Boundary conditions/Displacement": "bottom: 0, 0 ; top: free, 0.01"}
     pulled, without = (run_scene(PRESSED, {**pull, **more}) for more in ({}, OPEN))
