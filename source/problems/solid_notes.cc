@@ -237,7 +237,8 @@ namespace PeriDeal
     auto              &kept   = context.record.extremes[run.name()];
     if (places.first.empty() || kept.contains("first broken bond"))
       return;
-    kept["first broken bond"] = places.first;
+    kept["first broken bond"]  = places.first;
+    kept["first broken bonds"] = t;
     std::ostringstream line;
     line.precision(4);
     line << "  " << run.name() << ": the first bond broke at (";

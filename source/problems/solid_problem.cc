@@ -249,12 +249,18 @@ namespace PeriDeal
       return move(from, to, report, context);
     if (scene.warms_slowly() && !loading->is_inside_step())
       take_temperature();
-    Timings::Scope scope(this->timings, "solving");
+    Timings::Scope  scope(this->timings, "solving");
+    const AfterStep after_round = [&](const double t) {
+      tell_first_break(*this, t, context);
+      if (context.after_step)
+        context.after_step(t);
+    };
+    const AfterStep before_breaks = [&](const double t) { add_totals(t, context); };
     with_formulas(this->dofs().get_communicator(), [&] {
       if (loading->is_inside_step())
-        loading->go_on(displacement, context.after_step);
+        loading->go_on(displacement, after_round, before_breaks);
       else
-        loading->step(displacement, to, context.after_step);
+        loading->step(displacement, to, after_round, before_breaks);
     });
     n_iterations = loading->n_iterations();
     tell_first_break(*this, to, context);

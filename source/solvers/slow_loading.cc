@@ -201,15 +201,18 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::step(Vector &u, const double t, const AfterStep &after_round)
+  void SlowLoading::step(Vector          &u,
+                         const double     t,
+                         const AfterStep &after_round,
+                         const AfterStep &before_breaks)
   {
     breaking.goal = t;
-    reach(u);
-    go_on(u, after_round);
+    reach(u, before_breaks);
+    go_on(u, after_round, before_breaks);
   }
 
 
-  void SlowLoading::reach(Vector &u)
+  void SlowLoading::reach(Vector &u, const AfterStep &before_breaks)
   {
     const double t = breaking.goal;
     last           = u;
@@ -232,10 +235,12 @@ namespace PeriDeal
     so_far.work += work_of_forces.step(last, u, unbalanced, end);
     so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
     breaking         = {end, 0., false, false, t, breaking.most};
+    if (before_breaks && end < t)
+      before_breaks(end);
   }
 
 
-  void SlowLoading::go_on(Vector &u, const AfterStep &after_round)
+  void SlowLoading::go_on(Vector &u, const AfterStep &after_round, const AfterStep &before_breaks)
   {
     for (;;)
       {
@@ -246,7 +251,7 @@ namespace PeriDeal
         now          = breaking.time;
         if (now >= breaking.goal)
           break;
-        reach(u);
+        reach(u, before_breaks);
       }
     ++steps;
     tell_step(now);

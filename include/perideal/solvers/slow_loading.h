@@ -64,15 +64,20 @@ namespace PeriDeal
 
     /**
      * From the equilibrium u to that at time t. Bonds break in rounds; after each @p after_round is
-     * called with the new equilibrium, when all that the next rounds depend on can be kept.
+     * called with the new equilibrium, when all that the next rounds depend on can be kept. Where
+     * the step is divided @p before_breaks is called with the equilibrium there, of the time it is
+     * given, before its bonds break: forces may be larger than at both ends of the step.
      * Collective. Throws UserError if there is none to be found, among others since the body has
      * come apart under loads that nothing bears any more; u is the last equilibrium then. So it
      * does where full kinematics end with the body inside out.
      */
-    void step(Vector &u, const double t, const AfterStep &after_round = {});
+    void step(Vector          &u,
+              const double     t,
+              const AfterStep &after_round   = {},
+              const AfterStep &before_breaks = {});
 
     /** The rest of a step whose beginning was kept by exchange(); as step(). Collective. */
-    void go_on(Vector &u, const AfterStep &after_round = {});
+    void go_on(Vector &u, const AfterStep &after_round = {}, const AfterStep &before_breaks = {});
 
     /** Within a step: there is a rest to go_on() with. */
     bool is_inside_step() const
@@ -125,7 +130,7 @@ namespace PeriDeal
     };
 
     void   solve(Vector &u, const double t);
-    void   reach(Vector &u);
+    void   reach(Vector &u, const AfterStep &before_breaks);
     double shorten(Vector &u);
     bool   break_bonds(Vector &u, const double t);
     void   change_bonds(Vector &u, const double t, const AfterStep &after_round);
