@@ -257,10 +257,8 @@ namespace PeriDeal
     };
     const AfterStep before_breaks = [&](const double t) { add_totals(t, context); };
     with_formulas(this->dofs().get_communicator(), [&] {
-      if (loading->is_inside_step())
-        loading->go_on(displacement, after_round, before_breaks);
-      else
-        loading->step(displacement, to, after_round, before_breaks);
+      loading->is_inside_step() ? loading->go_on(displacement, after_round, before_breaks) :
+                                  loading->step(displacement, to, after_round, before_breaks);
     });
     n_iterations = loading->n_iterations();
     tell_first_break(*this, to, context);
