@@ -118,9 +118,9 @@ def forces(run):
 
 
 def first_break(run):
-    """{model: time of the first row with broken bonds}."""
+    """{model: time at which the first bonds broke, that of the first row with broken bonds in older results}."""
     found = {m: [t for t, v in sorted(s) if v > 0] for m, s in run.totals.get(BROKEN, {}).items()}
-    return {m: times[0] for m, times in found.items() if times}
+    return {m: run.summary["models"].get(m, {}).get("first broken bonds", times[0]) for m, times in found.items() if times}
 
 
 def n_times(run):

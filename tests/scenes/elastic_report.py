@@ -212,7 +212,7 @@ def over_time(run, model, quantity):
 def bonds_sentence(run, when):
     """What the report has to say of the bonds of a run in which some broke."""
     broken, lost = over_time(run, PD, "broken bonds"), over_time(run, PD, "energy dissipated")
-    first, last = next(t for t, v in broken if v > 0), int(broken[-1][1])
+    first, last = run.model(PD)["first broken bonds"], int(broken[-1][1])
     total = last + run.model(PD)["bonds"]
     return f"The first bonds broke {when} t = {written(first, 4)} s; in the end {written(last)} bonds of {written(total)} " \
         f"({written(100 * last / total, 3)} %) were broken, and an energy of {written(lost[-1][1], 4)} J/m was dissipated."
