@@ -187,8 +187,9 @@ namespace PeriDeal
 
   void measure_peers()
   {
-    const double ours = measure_motion<3>("peers, 3D 41^3, m = 3", 41, "3", "auto", 0.05).whole,
-                 full = measure_motion<3>("peers, 3D 41^3, m = 3, full kinematics",
+    const Rates  linear = measure_motion<3>("peers, 3D 41^3, m = 3", 41, "3", "auto", 0.05);
+    const double ours   = linear.whole,
+                 full   = measure_motion<3>("peers, 3D 41^3, m = 3, full kinematics",
                                           41,
                                           "3",
                                           "auto",
@@ -196,6 +197,10 @@ namespace PeriDeal
                                           "full")
                           .whole,
                  theirs = rate_of_lammps(41, 3., 20);
+    found("peers, 3D 41^3, m = 3: memory, few nodes damaged",
+          text("%.0f bytes per node", linear.bytes),
+          "<= 250 bytes",
+          linear.bytes <= 250.);
     if (theirs == 0.)
       found("peers: LAMMPS", "not installed (lmp), or without peri/lps");
     else

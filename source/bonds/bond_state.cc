@@ -15,33 +15,46 @@ namespace PeriDeal
 
   void BondState::resize(const std::size_t n)
   {
-    if (n > marks.size())
-      make_room(marks, n - marks.size());
-    marks.resize(n, whole);
-  }
-
-
-  std::size_t BondState::size() const
-  {
-    return marks.size();
+    Assert(n >= n_bonds, ExcInternalError());
+    const std::size_t n_bytes = (n + 3) / 4;
+    if (!marks.empty() && n_bytes > marks.size()) // a list that grows; many never do
+      make_room(marks, n_bytes - marks.size());
+    marks.resize(n_bytes, 0);
+    n_bonds = n;
   }
 
 
   void BondState::mark(const std::size_t number, const Mark mark, const double time)
   {
-    AssertIndexRange(number, marks.size());
-    Assert(marks[number] == whole && mark != whole, ExcInternalError());
-    marks[number] = mark;
-    if (mark != parted || time > 0.)
-      times.emplace_back(number, time);
+    AssertIndexRange(number, n_bonds);
+    Assert(is_whole(number) && mark != whole, ExcInternalError());
+    marks[number / 4] |= static_cast<std::uint8_t>(mark << shift(number));
+    if (mark == parted && !(time > 0.))
+      return;
+    if (times.empty() || times.back().second != time)
+      times.emplace_back(marked.size(), time);
+    make_room(marked, 1);
+    marked.push_back(number);
+  }
+
+
+  double BondState::time_of(const std::size_t k) const
+  {
+    const auto after = std::upper_bound(
+      times.begin(),
+      times.end(),
+      k,
+      [](const std::size_t place, const auto &entry) { return place < entry.first; });
+    return (after - 1)->second;
   }
 
 
   std::vector<std::pair<std::size_t, double>> BondState::marked_since(std::size_t &n_known) const
   {
-    const std::size_t first = n_known;
-    n_known                 = times.size();
-    return {times.begin() + first, times.end()};
+    std::vector<std::pair<std::size_t, double>> list;
+    for (; n_known < marked.size(); ++n_known)
+      list.emplace_back(marked[n_known], time_of(n_known));
+    return list;
   }
 
 
@@ -49,10 +62,8 @@ namespace PeriDeal
   {
     if (is_whole(number))
       return std::numeric_limits<double>::infinity();
-    const auto found = std::find_if(times.begin(), times.end(), [number](const auto &entry) {
-      return entry.first == number;
-    });
-    return found == times.end() ? 0. : found->second;
+    const auto found = std::find(marked.begin(), marked.end(), number);
+    return found == marked.end() ? 0. : time_of(found - marked.begin());
   }
 
 
@@ -74,13 +85,13 @@ namespace PeriDeal
     KeyedPairs        pairs; // a node, and the number of its bond among its own
     std::vector<Kept> kept;
     if (!archive.loads())
-      for (std::size_t k = 0; k < times.size(); ++k)
+      for (std::size_t k = 0; k < marked.size(); ++k)
         {
-          const auto [number, time] = times[k];
-          const std::size_t node    = numbering.node_of(number);
+          const std::size_t number = marked[k], node = numbering.node_of(number);
           pairs.keys.push_back({keys[node], number - numbering.first_of(node)});
-          pairs.values.insert(pairs.values.end(),
-                              {time, static_cast<double>(marks[number]), k < n_first ? 1. : 0.});
+          pairs.values.insert(
+            pairs.values.end(),
+            {time_of(k), static_cast<double>((*this)[number]), k < n_first ? 1. : 0.});
         }
     archive.exchange("bonds", pairs, keys);
     if (!archive.loads() || pairs.keys.empty())
@@ -103,12 +114,16 @@ namespace PeriDeal
 
   std::size_t BondState::count(const Mark mark) const
   {
-    return std::count(marks.begin(), marks.end(), mark);
+    std::size_t n = 0;
+    for (std::size_t number = 0; number < n_bonds; ++number)
+      n += (*this)[number] == mark;
+    return n;
   }
 
 
   std::size_t BondState::memory_consumption() const
   {
-    return marks.capacity() * sizeof(Mark) + times.capacity() * sizeof(times[0]);
+    return marks.capacity() + marked.capacity() * sizeof(std::size_t) +
+           times.capacity() * sizeof(times[0]);
   }
 } // namespace PeriDeal

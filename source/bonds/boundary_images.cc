@@ -253,15 +253,10 @@ namespace PeriDeal
                   const auto &layout = *nodes.partitioner();
                   const bool  known  = layout.in_local_range(node) || layout.is_ghost_entry(node);
                   image.terms.push_back(
-                    {known ? layout.global_to_local(node) : numbers::invalid_unsigned_int,
-                     0.,
-                     Tensor<1, dim>(),
-                     0});
+                    {known ? layout.global_to_local(node) : numbers::invalid_unsigned_int, 0, 0.});
                   image.term_places.push_back(part.places[k]);
                 }
               image.terms[at].factor += part.factor * weight;
-              for (unsigned int d = 0; d < dim; ++d)
-                image.terms[at].of_component[d] += part.factor * weight;
             }
       }
 
@@ -290,10 +285,7 @@ namespace PeriDeal
             image.planes[axis]       = plane.side;
             image.twice_planes[axis] = 2. * plane.at;
             for (auto &term : image.terms)
-              {
-                term.of_component[axis] *= -1.;
-                term.mirrored ^= 1u << axis;
-              }
+              term.mirrored ^= 1u << axis;
           }
         mirrored.push_back(image);
       };
@@ -304,10 +296,7 @@ namespace PeriDeal
           image.volume = nodes.volume(m);
           image.origin = m;
           image.planes.fill(numbers::invalid_boundary_id);
-          Tensor<1, dim> ones;
-          for (unsigned int d = 0; d < dim; ++d)
-            ones[d] = 1.;
-          image.terms.push_back({m, 1., ones, 0});
+          image.terms.push_back({m, 0, 1.});
           image.term_places.push_back(image.place);
           add(image);
         }

@@ -122,11 +122,8 @@ namespace PeriDeal
     std::vector<Index>  places{index};
     std::vector<Step>   steps;
     Index               image = index;
-    Term                start{0, 1., Tensor<1, dim>(), 0};
     double              parts = 1.;
-    for (unsigned int d = 0; d < dim; ++d)
-      start.of_component[d] = 1.;
-    site.terms.assign(1, start);
+    site.terms.assign(1, Term{0, 0, 1.});
     for (unsigned int d = 0; d < dim; ++d)
       {
         const int last = lattice.n_sites[d] - 1;
@@ -151,12 +148,8 @@ namespace PeriDeal
             Term       &term = site.terms[k];
             places[k][d]     = step.site;
             term.factor *= step.factor;
-            term.of_component *= step.factor;
             if (step.even)
-              {
-                term.of_component[d] *= -1.;
-                term.mirrored |= 1u << d;
-              }
+              term.mirrored |= 1u << d;
           }
       }
     for (std::size_t k = 0; k < places.size(); ++k)

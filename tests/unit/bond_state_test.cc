@@ -41,6 +41,40 @@ TEST(BondState, keeps_why_and_since_when)
   EXPECT_EQ(state.since(1), 0.5);
   EXPECT_EQ(state.count(BondState::whole), 7u);
   EXPECT_EQ(state.count(BondState::broken), 1u);
-  EXPECT_GE(state.memory_consumption(), 10u);
+  EXPECT_GE(state.memory_consumption(), 3u);
   EXPECT_LT(state.memory_consumption(), 200u);
+}
+
+
+TEST(BondState, keeps_marks_while_its_list_grows)
+{
+  BondState   state;
+  std::size_t n_known = 0;
+  const auto  mark_of = [](const std::size_t k) {
+    return k % 5 == 0 ? BondState::broken : k % 5 == 3 ? BondState::dependent : BondState::whole;
+  };
+  for (std::size_t n = 0; n < 203; n += 7)
+    {
+      state.resize(n + 7);
+      EXPECT_EQ(state.size(), n + 7);
+      for (std::size_t k = n; k < n + 7; ++k)
+        if (mark_of(k) != BondState::whole)
+          state.mark(k, mark_of(k), static_cast<double>(n / 21));
+      for (const auto &[number, time] : state.marked_since(n_known))
+        {
+          EXPECT_GE(number, n);
+          EXPECT_EQ(time, static_cast<double>(n / 21));
+        }
+      EXPECT_EQ(n_known, state.n_marks());
+    }
+  EXPECT_TRUE(state.is_whole(203));
+  for (std::size_t k = 0; k < state.size(); ++k)
+    {
+      EXPECT_EQ(state[k], mark_of(k));
+      if (!state.is_whole(k))
+        EXPECT_EQ(state.since(k), static_cast<double>(k / 7 * 7 / 21));
+    }
+  EXPECT_EQ(state.count(BondState::whole) + state.n_marks(), state.size());
+  // Two bits a bond and a number for each mark, and at most an eighth of that beside.
+  EXPECT_LT(state.memory_consumption(), 1.2 * (203 / 4. + 8. * state.n_marks()) + 16. * 16.);
 }

@@ -207,7 +207,10 @@ TEST(SolidParts, images_pass_on_what_they_are_pulled_by)
         product += force[d] * images.value(g)[d];
       // Constants are continued as such.
       Tensor<1, 2> sum;
-      images.for_each_term(g, [&](const auto &term) { sum += term.of_component; });
+      images.for_each_term(g, [&](const auto &term) {
+        for (unsigned int d = 0; d < 2; ++d)
+          sum[d] += term.of_component(d);
+      });
       for (unsigned int d = 0; d < 2; ++d)
         EXPECT_NEAR(sum[d], 1., 1e-12);
     }

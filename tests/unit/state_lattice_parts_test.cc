@@ -24,7 +24,7 @@ namespace
       , families(body.states->bonds().families)
       , nodes(families.nodes())
       , computed(nodes.n_owned())
-      , coefficients{stiff, 1., std::vector<double>(nodes.n_local(), stiff), {}}
+      , coefficients{stiff, 1., std::vector<double>(nodes.n_local(), 0.), {}}
       , complete(families, coefficients)
     {
       for (unsigned int i = 0; i < nodes.n_local(); ++i)
@@ -32,7 +32,7 @@ namespace
           if (i < nodes.n_owned())
             computed[i] = i % 11 != 3;
           if (nodes.position(i)[0] > soft_from)
-            coefficients.stiffnesses[i] = soft;
+            coefficients.excesses[i] = 0.5 * (soft / stiff - 1.);
         }
     }
 
@@ -73,11 +73,17 @@ TEST(StateLatticeParts, edge_nodes_are_those_whose_families_end_or_are_mixed)
       EXPECT_EQ(of_mixed.number_of[i] != of_mixed.none,
                 ends || mixed.nodes.position(i)[0] > 0.6 || beyond < reach[0] * lattice.spacing[0])
         << parts.nodes.position(i);
-      EXPECT_EQ(of_mixed.excess[i],
-                mixed.nodes.position(i)[0] > 0.6 ? 0.5 * (soft / stiff - 1.) : 0.);
+      if (of_mixed.number_of[i] != of_mixed.none)
+        EXPECT_EQ(of_mixed.list[of_mixed.number_of[i]].excess,
+                  mixed.nodes.position(i)[0] > 0.6 ? 0.5 * (soft / stiff - 1.) : 0.);
       n_edges += ends;
     }
   EXPECT_EQ(edges.list.size(), n_edges);
+  // Along sides all nodes have the moment of one.
+  const double n_moments = (2. * reach[0] + 1.) * (2. * reach[1] + 1.);
+  EXPECT_LE(edges.memory_consumption(),
+            4. * edges.number_of.size() + (sizeof(edges.list[0]) + 4.) * edges.list.size() +
+              sizeof(dealii::Tensor<1, 2>) * n_moments);
 }
 
 
@@ -91,9 +97,9 @@ TEST(StateLatticeParts, moments_of_all_nodes_have_no_sum)
   for (unsigned int i = 0; i < parts.nodes.n_owned(); ++i)
     if (edges.number_of[i] != edges.none)
       {
-        const auto &node = edges.list[edges.number_of[i]];
-        sum += parts.nodes.volume(i) * node.moment;
-        size += parts.nodes.volume(i) * node.moment.norm();
+        const dealii::Tensor<1, 2> &moment = edges.moment(edges.number_of[i]);
+        sum += parts.nodes.volume(i) * moment;
+        size += parts.nodes.volume(i) * moment.norm();
       }
   EXPECT_LT(dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD).norm(),
             1e-12 * dealii::Utilities::MPI::sum(size, MPI_COMM_WORLD));

@@ -15,8 +15,8 @@
 namespace PeriDeal
 {
   /**
-   * Which of a list of bonds are whole, and why and since when others are not: their one owner. A
-   * byte a bond, by its number in the list; both ends of a bond have numbers of their own and are
+   * Which of a list of bonds are whole, and why and since when others are not: their one owner. Two
+   * bits a bond, by its number in the list; both ends of a bond have numbers of their own and are
    * marked together. What a bond bears is set to nothing where it is stored, so that sums need not
    * ask; nobody else concludes from a zero that a bond is gone.
    */
@@ -32,31 +32,34 @@ namespace PeriDeal
     };
 
     /**
-     * A list of so many bonds; those that come to it are whole. Bonds beyond its end are whole, and
-     * none of them is marked.
+     * A list of so many bonds, not fewer than before; those that come to it are whole. Bonds beyond
+     * its end are whole, and none of them is marked.
      */
     void resize(const std::size_t n);
 
-    std::size_t size() const;
+    std::size_t size() const
+    {
+      return n_bonds;
+    }
 
     bool is_whole(const std::size_t number) const
     {
-      return number >= marks.size() || marks[number] == whole;
+      return (*this)[number] == whole;
     }
 
     bool is_parted(const std::size_t number) const
     {
-      return number < marks.size() && marks[number] == parted;
+      return (*this)[number] == parted;
     }
 
     bool is_broken(const std::size_t number) const
     {
-      return number < marks.size() && marks[number] == broken;
+      return (*this)[number] == broken;
     }
 
     Mark operator[](const std::size_t number) const
     {
-      return number < marks.size() ? marks[number] : whole;
+      return number < n_bonds ? static_cast<Mark>((marks[number / 4] >> shift(number)) & 3) : whole;
     }
 
     /** Of a whole bond; it stays so. @param time since when, that of the run */
@@ -101,7 +104,7 @@ namespace PeriDeal
     /** Those at the start apart. */
     std::size_t n_marks() const
     {
-      return times.size();
+      return marked.size();
     }
 
     /**
@@ -116,7 +119,16 @@ namespace PeriDeal
     std::size_t memory_consumption() const;
 
   private:
-    std::vector<Mark>                           marks;
-    std::vector<std::pair<std::size_t, double>> times; // in the order of marking; few bonds break
+    static unsigned int shift(const std::size_t number)
+    {
+      return 2 * (number % 4);
+    }
+
+    double time_of(const std::size_t k) const; // by the place in the list of those marked
+
+    std::size_t                                 n_bonds = 0;
+    std::vector<std::uint8_t>                   marks;  // four to a byte
+    std::vector<std::size_t>                    marked; // in the order of marking
+    std::vector<std::pair<std::size_t, double>> times;  // from which place in these on
   };
 } // namespace PeriDeal

@@ -39,10 +39,15 @@ namespace PeriDeal
     {
       struct Term
       {
-        unsigned int           node;
-        double                 factor;       // of what is no vector
-        dealii::Tensor<1, dim> of_component; // factors of the displacement's components
-        unsigned int           mirrored;     // bits: the axes along which it is a mirror image
+        unsigned int node;
+        unsigned int mirrored; // bits: the axes along which it is a mirror image
+        double       factor;   // of what is no vector
+
+        /** The factor of a component of the displacement. */
+        double of_component(const unsigned int d) const
+        {
+          return (mirrored >> d) & 1 ? -factor : factor;
+        }
       };
 
       std::vector<Term> terms;

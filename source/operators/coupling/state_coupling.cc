@@ -292,7 +292,7 @@ namespace PeriDeal
             const auto  place = std::find(nodes.begin(), nodes.end(), term.node);
             Part        part{static_cast<unsigned int>(place - nodes.begin()), w * xi};
             for (unsigned int d = 0; d < dim; ++d)
-              part.moment[d] *= term.of_component[d];
+              part.moment[d] *= term.of_component(d);
             bond.parts.push_back(part);
             if (strain)
               bond.strain += 0.5 * term.factor * strain(term.node);

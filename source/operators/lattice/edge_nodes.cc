@@ -6,6 +6,7 @@
 #include <perideal/mesh/lattice_sites.h>
 
 #include <algorithm>
+#include <map>
 
 namespace PeriDeal
 {
@@ -72,17 +73,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename EdgeNodes<dim>::Node EdgeNodes<dim>::find(const Families<dim>         &families,
-                                                     const CompleteFamilies<dim> &complete,
-                                                     const LatticeCoefficients   &coefficients,
-                                                     const unsigned int           i) const
+  void EdgeNodes<dim>::add(const Families<dim>         &families,
+                           const CompleteFamilies<dim> &complete,
+                           const LatticeCoefficients   &coefficients,
+                           const unsigned int           i,
+                           Tensor<1, dim>              &moment)
   {
-    const Nodes<dim> &nodes = families.nodes();
-    const auto        site  = nodes.lattice()->index(nodes.position(i));
-    Node              edge;
+    const Nodes<dim>          &nodes  = families.nodes();
+    const std::vector<double> &excess = coefficients.excesses;
+    const auto                 site   = nodes.lattice()->index(nodes.position(i));
+    Node                       edge;
     edge.excess     = excess[i];
     edge.dilatation = coefficients.dilatations.empty() ? 0. : coefficients.dilatations[i];
     edge.block.fill(0.);
+    moment = Tensor<1, dim>();
     for (const FamilyMember<dim> &member : families.weights().members())
       {
         const unsigned int j = families.neighbors().node_at(site + member.offset);
@@ -92,7 +96,7 @@ namespace PeriDeal
         const double         weight = nodes.volume(j) * member.weight,
                      spring = 2. * complete.stiffness * (1. + excess[i] + excess[j]) * weight /
                               xi.norm_square();
-        edge.moment += weight * xi;
+        moment += weight * xi;
         for (unsigned int a = 0; a < dim; ++a)
           for (unsigned int b = a; b < dim; ++b)
             edge.block[complete.pair(a, b)] += spring * xi[a] * xi[b];
@@ -100,7 +104,7 @@ namespace PeriDeal
     for (unsigned int a = 0; a < dim; ++a)
       edge.block[complete.pair(a, a)] +=
         complete.center[a] * nodes.volume(i) * (1. + 2. * excess[i]);
-    return edge;
+    list.push_back(edge);
   }
 
 
@@ -110,9 +114,9 @@ namespace PeriDeal
                             const LatticeCoefficients   &coefficients,
                             const std::vector<bool>     &computed)
   {
-    const Nodes<dim> &nodes = families.nodes();
-    for (const double s : coefficients.stiffnesses)
-      excess.push_back(0.5 * (s / complete.stiffness - 1.)); // 0 to the last bit at most nodes
+    const Nodes<dim>                              &nodes = families.nodes();
+    std::map<std::array<double, dim>, std::size_t> known; // moments
+    Tensor<1, dim>                                 moment;
     number_of.assign(nodes.n_owned(), none);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -120,7 +124,7 @@ namespace PeriDeal
           continue;
         const auto like_most = [&](const unsigned int j) {
           return j != numbers::invalid_unsigned_int && nodes.volume(j) == complete.volume &&
-                 excess[j] == 0.;
+                 coefficients.excesses[j] == 0.;
         };
         bool       regular = like_most(i) && (coefficients.dilatations.empty() ||
                                         coefficients.dilatations[i] == complete.dilatation);
@@ -130,17 +134,25 @@ namespace PeriDeal
         if (regular)
           continue;
         number_of[i] = static_cast<std::uint32_t>(list.size());
-        list.push_back(find(families, complete, coefficients, i));
+        add(families, complete, coefficients, i, moment);
+        std::array<double, dim> key;
+        std::copy(moment.begin_raw(), moment.end_raw(), key.begin());
+        const auto [entry, is_new] = known.try_emplace(key, moments.size());
+        if (is_new)
+          moments.push_back(moment);
+        moment_of.push_back(static_cast<std::uint32_t>(entry->second));
       }
     list.shrink_to_fit();
+    moments.shrink_to_fit();
+    moment_of.shrink_to_fit();
   }
 
 
   template <int dim>
   std::size_t EdgeNodes<dim>::memory_consumption() const
   {
-    return excess.capacity() * sizeof(double) + number_of.capacity() * sizeof(std::uint32_t) +
-           list.capacity() * sizeof(Node);
+    return (number_of.capacity() + moment_of.capacity()) * sizeof(std::uint32_t) +
+           moments.capacity() * sizeof(Tensor<1, dim>) + list.capacity() * sizeof(Node);
   }
 
 

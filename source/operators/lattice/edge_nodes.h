@@ -13,8 +13,8 @@ namespace PeriDeal
   struct LatticeCoefficients
   {
     double              stiffness = 0., dilatation = 0.; // of most nodes, with complete families
-    std::vector<double> stiffnesses;                     // s, owned and ghosts
-    std::vector<double> dilatations;                     // c d/q^2, owned; empty: none
+    std::vector<double> excesses;    // e, owned and ghosts; 0 to the last bit at most nodes
+    std::vector<double> dilatations; // c d/q^2, owned; empty: none
   };
 
 
@@ -49,7 +49,6 @@ namespace PeriDeal
     struct Node
     {
       double                                 excess, dilatation; // e, c d/q^2
-      dealii::Tensor<1, dim>                 moment;             // sum_j V_j w xi
       std::array<double, dim *(dim + 1) / 2> block; // of -u_i; less what is in the stencils
     };
 
@@ -58,16 +57,26 @@ namespace PeriDeal
               const LatticeCoefficients   &coefficients,
               const std::vector<bool>     &computed);
 
+    /** sum_j V_j w xi of a node of the list. */
+    const dealii::Tensor<1, dim> &moment(const std::size_t edge) const
+    {
+      return moments[moment_of[edge]];
+    }
+
     std::size_t memory_consumption() const;
 
-    std::vector<double>        excess;    // e, owned and ghosts
     std::vector<std::uint32_t> number_of; // an owned node, in the list, or none
     std::vector<Node>          list;
 
   private:
-    Node find(const Families<dim>         &families,
-              const CompleteFamilies<dim> &complete,
-              const LatticeCoefficients   &coefficients,
-              const unsigned int           i) const;
+    void add(const Families<dim>         &families,
+             const CompleteFamilies<dim> &complete,
+             const LatticeCoefficients   &coefficients,
+             const unsigned int           i,
+             dealii::Tensor<1, dim>      &moment);
+
+    // Along sides of the body all nodes have the same ones, to the last bit.
+    std::vector<dealii::Tensor<1, dim>> moments;
+    std::vector<std::uint32_t>          moment_of; // the nodes of the list
   };
 } // namespace PeriDeal

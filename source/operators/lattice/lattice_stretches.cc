@@ -155,6 +155,7 @@ namespace PeriDeal
   {
     return groups.capacity() * sizeof(Group) + list.capacity() * sizeof(Stretch) +
            (places.capacity() + edge_places.capacity()) * sizeof(std::uint32_t) +
+           clusters.capacity() * sizeof(std::size_t) +
            (runs.capacity() + edge_runs.capacity()) * sizeof(StencilKernel::Run);
   }
 

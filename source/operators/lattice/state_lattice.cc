@@ -35,13 +35,30 @@ namespace PeriDeal
     for (unsigned int i = 0; i < volumes.size(); ++i)
       volumes[i] = families.nodes().volume(i);
     layout.set_values(volumes, std::vector<double>(families.nodes().n_owned(), 0.));
+    find_excesses(coefficients.excesses, volumes);
+    set_terms();
+  }
+
+
+  template <int dim>
+  void StateLattice<dim>::find_excesses(const std::vector<double> &excesses,
+                                        const std::vector<double> &volumes)
+  {
     for (unsigned int i = 0; i < volumes.size(); ++i)
       {
         const auto site = families.nodes().lattice()->index(families.nodes().position(i));
-        if (edges.excess[i] != 0. && layout.in_grid(site))
-          excess_slots.push_back({layout.slot(site), i, volumes[i] * edges.excess[i]});
+        if (excesses[i] == 0. || !layout.in_grid(site))
+          continue;
+        const std::size_t slot = layout.slot(site);
+        ExcessRun *const  last = excess_runs.empty() ? nullptr : &excess_runs.back();
+        if (last != nullptr && last->node + last->n == i && last->slot + last->n == slot)
+          ++last->n;
+        else
+          excess_runs.push_back({slot, i, 1});
+        excess_factors.push_back(volumes[i] * excesses[i]);
       }
-    set_terms();
+    excess_runs.shrink_to_fit();
+    excess_factors.shrink_to_fit();
   }
 
 
@@ -114,8 +131,14 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       {
         std::fill(displacements[d].begin(), displacements[d].end(), 0.);
-        for (const ExcessSlot &at : excess_slots)
-          displacements[d][at.slot] = at.factor * u[static_cast<std::size_t>(dim) * at.node + d];
+        const double *factor = excess_factors.data();
+        for (const ExcessRun &run : excess_runs)
+          {
+            double *const       to   = displacements[d].data() + run.slot;
+            const double *const from = u + static_cast<std::size_t>(dim) * run.node + d;
+            for (std::uint32_t k = 0; k < run.n; ++k)
+              to[k] = *factor++ * from[dim * k];
+          }
       }
     std::size_t s = 0;
     for (std::size_t group = 0; group < stretches.groups.size(); ++group)
@@ -150,12 +173,12 @@ namespace PeriDeal
             else
               for (std::uint32_t k = 0; k < stretch.n; ++k)
                 {
-                  const auto         &edge = edges.list[stretch.edge + k];
-                  const double *const own  = u + static_cast<std::size_t>(dim) * (stretch.node + k);
-                  double              sum  = found[k];
+                  const Tensor<1, dim> &moment = edges.moment(stretch.edge + k);
+                  const double *const own = u + static_cast<std::size_t>(dim) * (stretch.node + k);
+                  double              sum = found[k];
                   for (unsigned int d = 0; d < dim; ++d)
-                    sum -= edge.moment[d] * own[d];
-                  to[k] = edge.dilatation * sum;
+                    sum -= moment[d] * own[d];
+                  to[k] = edges.list[stretch.edge + k].dilatation * sum;
                 }
           }
       }
@@ -183,13 +206,14 @@ namespace PeriDeal
   {
     for (std::uint32_t k = 0; k < stretch.n; ++k)
       {
-        const auto         &edge = edges.list[stretch.edge + k];
-        const std::size_t   node = stretch.node + k, at = stretch.at + k;
-        const double *const own     = u + dim * node;
-        const double        tension = tau != nullptr ? tau[node] : 0.;
+        const auto           &edge   = edges.list[stretch.edge + k];
+        const Tensor<1, dim> &moment = edges.moment(stretch.edge + k);
+        const std::size_t     node = stretch.node + k, at = stretch.at + k;
+        const double *const   own     = u + dim * node;
+        const double          tension = tau != nullptr ? tau[node] : 0.;
         for (unsigned int a = 0; a < dim; ++a)
           {
-            double force = sums[a][at] + tension * edge.moment[a] + edge.excess * own_sums[a][at];
+            double force = sums[a][at] + tension * moment[a] + edge.excess * own_sums[a][at];
             for (unsigned int b = 0; b < dim; ++b)
               force -= edge.block[complete.pair(a, b)] * own[b];
             y[dim * node + a] = -families.nodes().volume(node) * force;
@@ -214,7 +238,7 @@ namespace PeriDeal
                           dim + (with_tau ? 1 : 0),
                           group,
                           sums[a].data());
-        if (!excess_slots.empty())
+        if (!excess_runs.empty())
           add_up_at_edges(group, own_sums);
         for (; s < stretches.groups[group].stretches; ++s)
           if (stretches.list[s].edge == none)
@@ -222,7 +246,7 @@ namespace PeriDeal
           else
             finish_edge(stretches.list[s], u, tau, y);
       }
-    if (!excess_slots.empty())
+    if (!excess_runs.empty())
       add_excess(y, u);
   }
 
@@ -237,9 +261,10 @@ namespace PeriDeal
   template <int dim>
   std::size_t StateLattice<dim>::memory_consumption() const
   {
-    std::size_t bytes =
-      layout.memory_consumption() + edges.memory_consumption() + stretches.memory_consumption() +
-      excess_slots.capacity() * sizeof(ExcessSlot) + tensions.capacity() * sizeof(double);
+    std::size_t bytes = layout.memory_consumption() + edges.memory_consumption() +
+                        stretches.memory_consumption() +
+                        excess_runs.capacity() * sizeof(ExcessRun) +
+                        (excess_factors.capacity() + tensions.capacity()) * sizeof(double);
     for (unsigned int d = 0; d < dim; ++d)
       for (const auto *list : {&displacements[d], &sums[d], &own_sums[d]})
         bytes += list->capacity() * sizeof(double);

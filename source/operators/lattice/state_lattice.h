@@ -58,13 +58,14 @@ namespace PeriDeal
 
     static constexpr std::uint32_t none = EdgeNodes<dim>::none;
 
-    struct ExcessSlot
+    /** Consecutive nodes with e != 0 at consecutive slots. */
+    struct ExcessRun
     {
       std::size_t   slot;
-      std::uint32_t node;
-      double        factor; // V e
+      std::uint32_t node, n;
     };
 
+    void find_excesses(const std::vector<double> &excesses, const std::vector<double> &volumes);
     void set_terms();
     template <int n_components>
     void fill(std::vector<double> *to, const std::size_t group, const double *values) const;
@@ -78,7 +79,8 @@ namespace PeriDeal
     const EdgeNodes<dim>        edges;
     LatticeLayout<dim>          layout;
     const LatticeStretches<dim> stretches;
-    std::vector<ExcessSlot>     excess_slots;
+    std::vector<ExcessRun>      excess_runs;
+    std::vector<double>         excess_factors; // V e of their nodes
 
     mutable std::array<std::vector<double>, dim>      displacements;  // padded: V u
     mutable std::vector<double>                       tensions;       // padded: V tau

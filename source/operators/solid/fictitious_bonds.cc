@@ -221,7 +221,7 @@ namespace PeriDeal
           fictitious.for_each_term(bond.image, [&](const Term &term) {
             Tensor<1, dim> p;
             for (unsigned int d = 0; d < dim; ++d)
-              p[d] = term.of_component[d] * bond.moment[d];
+              p[d] = term.of_component(d) * bond.moment[d];
             if (term.node == i)
               of_node -= p;
             else
@@ -267,7 +267,7 @@ namespace PeriDeal
       fictitious.for_each_term(bond.image, [&](const Term &term) {
         double largest = 0.;
         for (unsigned int d = 0; d < dim; ++d)
-          largest = std::max(largest, std::abs(term.of_component[d]));
+          largest = std::max(largest, std::abs(term.of_component(d)));
         rows.local_element(term.node) += size * largest * p;
         rows.local_element(term.node) += largest * aside * all;
       });

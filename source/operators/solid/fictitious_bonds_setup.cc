@@ -143,12 +143,11 @@ namespace PeriDeal
         if (number_of[g] == numbers::invalid_unsigned_int)
           {
             typename FictitiousImages<dim>::Image fields{};
-            fields.place        = image.place;
-            fields.planes       = image.planes;
-            fields.volume       = image.volume;
-            fields.origin       = image.origin;
-            fields.twice_planes = image.twice_planes;
-            number_of[g]        = fictitious.add(fields, image.terms);
+            fields.place  = image.place;
+            fields.planes = image.planes;
+            fields.volume = image.volume;
+            fields.origin = image.origin;
+            number_of[g]  = fictitious.add(fields, image.terms, &image.twice_planes);
           }
         const double weight = families.weights().of_length(xi.norm());
         add_bond(number_of[g], xi, nodes.volume(i) * image.volume * weight, cut, 0, search);
@@ -281,7 +280,7 @@ namespace PeriDeal
       fictitious.for_each_term(bond.image, [&](const Term &term) { terms.push_back(term); });
       const bool cut = is_cut(node, terms, [&](const Term &term) {
         if (!families.nodes().lattice())
-          return fictitious[bond.image].twice_planes;
+          return fictitious.twice_planes(bond.image);
         return Point<dim>(fictitious[bond.image].place +
                           (families.nodes().position(term.node) - Point<dim>()));
       });

@@ -19,9 +19,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned int FictitiousImages<dim>::add(const Image &image, const std::vector<Term> &of_image)
+  unsigned int FictitiousImages<dim>::add(const Image             &image,
+                                          const std::vector<Term> &of_image,
+                                          const Point<dim>        *twice_planes)
   {
     images.push_back(image);
+    if (twice_planes != nullptr)
+      planes_of_mesh.push_back(*twice_planes);
     terms.insert(terms.end(), of_image.begin(), of_image.end());
     starts.push_back(terms.size());
     return images.size() - 1;
@@ -31,14 +35,24 @@ namespace PeriDeal
   template <int dim>
   void FictitiousImages<dim>::make_room()
   {
+    images.shrink_to_fit();
+    planes_of_mesh.shrink_to_fit();
+    starts.shrink_to_fit();
+    terms.shrink_to_fit();
     values.resize(dim * images.size());
     forces.resize(values.size());
-    passed.reinit(interleaved(*nodes.partitioner(), dim));
+    pulled.reserve(terms.size());
     for (const Term &term : terms)
-      for (unsigned int d = 0; d < dim; ++d)
-        pulled.push_back(dim * term.node + d);
+      pulled.push_back(term.node);
     std::sort(pulled.begin(), pulled.end());
     pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
+    pulled.shrink_to_fit();
+    sums.resize(dim * pulled.size());
+    places.reserve(terms.size());
+    for (const Term &term : terms)
+      places.push_back(std::lower_bound(pulled.begin(), pulled.end(), term.node) - pulled.begin());
+    if (nodes.partitioner()->n_mpi_processes() > 1)
+      passed.reinit(interleaved(*nodes.partitioner(), dim));
   }
 
 
@@ -59,7 +73,7 @@ namespace PeriDeal
     for_each_term(image, [&](const Term &term) {
       double largest = 0.;
       for (unsigned int d = 0; d < dim; ++d)
-        largest = std::max(largest, std::abs(term.of_component[d]));
+        largest = std::max(largest, std::abs(term.of_component(d)));
       sum += largest;
     });
     return sum;
@@ -96,7 +110,7 @@ namespace PeriDeal
         {
           double value = 0.;
           for (std::size_t k = starts[g]; k < starts[g + 1]; ++k)
-            value += terms[k].of_component[d] * u[dim * terms[k].node + d];
+            value += terms[k].of_component(d) * u[dim * terms[k].node + d];
           values[dim * g + d] = value;
         }
   }
@@ -105,26 +119,23 @@ namespace PeriDeal
   template <int dim>
   void FictitiousImages<dim>::pass_on(Vector &y) const
   {
-    const bool alone = passed.get_partitioner()->n_mpi_processes() == 1;
-    if (alone) // few unknowns, and there is nothing to be exchanged
-      for (const unsigned int i : pulled)
-        passed.local_element(i) = 0.;
-    else
+    std::fill(sums.begin(), sums.end(), 0.);
+    for (unsigned int g = 0; g < images.size(); ++g)
+      for (std::size_t k = starts[g]; k < starts[g + 1]; ++k)
+        for (unsigned int d = 0; d < dim; ++d)
+          sums[dim * places[k] + d] += terms[k].of_component(d) * forces[dim * g + d];
+    const bool alone = nodes.partitioner()->n_mpi_processes() == 1;
+    if (!alone)
       {
         passed = 0.;
         passed.zero_out_ghost_values();
       }
-    for (unsigned int g = 0; g < images.size(); ++g)
-      for (std::size_t k = starts[g]; k < starts[g + 1]; ++k)
-        for (unsigned int d = 0; d < dim; ++d)
-          passed.local_element(dim * terms[k].node + d) +=
-            terms[k].of_component[d] * forces[dim * g + d];
+    Vector &to = alone ? y : passed;
+    for (std::size_t p = 0; p < pulled.size(); ++p)
+      for (unsigned int d = 0; d < dim; ++d)
+        to.local_element(dim * pulled[p] + d) += sums[dim * p + d];
     if (alone)
-      {
-        for (const unsigned int i : pulled)
-          y.local_element(i) += passed.local_element(i);
-        return;
-      }
+      return;
     passed.compress(VectorOperation::add);
     y += passed;
   }
@@ -140,7 +151,7 @@ namespace PeriDeal
           if (images[g].planes[d] == numbers::invalid_boundary_id)
             continue;
           double all = 0.; // 1 beyond continued sides, -1 beyond a plane
-          for_each_term(g, [&](const Term &term) { all += term.of_component[d]; });
+          for_each_term(g, [&](const Term &term) { all += term.of_component(d); });
           const double force =
             forces[dim * g + d] + (kept_forces.empty() ? 0. : kept_forces[dim * g + d]);
           sums[images[g].planes[d]][d] += (1. - all) * force;
@@ -153,7 +164,12 @@ namespace PeriDeal
   std::size_t FictitiousImages<dim>::memory_consumption() const
   {
     return terms.capacity() * sizeof(Term) + images.capacity() * sizeof(Image) +
-           2 * dim * images.size() * sizeof(double);
+           planes_of_mesh.capacity() * sizeof(Point<dim>) +
+           starts.capacity() * sizeof(std::size_t) +
+           (pulled.capacity() + places.capacity()) * sizeof(unsigned int) +
+           (values.capacity() + forces.capacity() + sums.capacity() + kept_forces.capacity()) *
+             sizeof(double) +
+           (passed.size() > 0 ? passed.memory_consumption() : 0);
   }
 
 

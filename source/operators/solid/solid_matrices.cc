@@ -80,7 +80,7 @@ namespace PeriDeal
           if (place == members.size())
             add(term.node, Tensor<1, dim>());
           for (unsigned int d = 0; d < dim; ++d)
-            moment[place][d] += term.of_component[d] * bond.moment[d];
+            moment[place][d] += term.of_component(d) * bond.moment[d];
         });
       });
     };
@@ -138,7 +138,10 @@ namespace PeriDeal
               own[d] = -1.;
             parts.emplace_back(0, own);
             beyond->images().for_each_term(bond.image, [&](const auto &term) {
-              parts.emplace_back(place_of_member(term.node), term.of_component);
+              Tensor<1, dim> of_term;
+              for (unsigned int d = 0; d < dim; ++d)
+                of_term[d] = term.of_component(d);
+              parts.emplace_back(place_of_member(term.node), of_term);
             });
             Tensor<2, dim> block = bond.spring * outer_product(bond.moment, bond.moment);
             if (bond.whole)

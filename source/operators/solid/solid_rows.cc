@@ -357,7 +357,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < families.nodes().n_local(); ++i)
       {
         const double own = laws.weighted.local_element(i);
-        coefficients.stiffnesses.push_back(laws.stiffness(i));
+        coefficients.excesses.push_back(0.5 * (laws.stiffness(i) / coefficients.stiffness - 1.));
         if (laws.volumetric && i < families.nodes().n_owned())
           coefficients.dilatations.push_back(laws[i].volumetric * laws[i].dilatation / (own * own));
       }

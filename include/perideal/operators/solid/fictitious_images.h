@@ -28,17 +28,21 @@ namespace PeriDeal
     struct Image
     {
       dealii::Point<dim>                          place;
-      std::array<dealii::types::boundary_id, dim> planes; // that it may lie beyond
       double                                      volume;
-      unsigned int                                origin;       // the node that it is an image of
-      Index                                       site;         // on a lattice
-      dealii::Point<dim>                          twice_planes; // on a mesh (BoundaryImage)
+      std::array<dealii::types::boundary_id, dim> planes; // that it may lie beyond
+      unsigned int                                origin; // the node that it is an image of
+      Index                                       site;   // on a lattice
     };
 
     explicit FictitiousImages(const Nodes<dim> &nodes);
 
-    /** Returns its number. To be followed by make_room() after the last one. */
-    unsigned int add(const Image &image, const std::vector<Term> &of_image);
+    /**
+     * Returns its number. To be followed by make_room() after the last one.
+     * @param twice_planes of a BoundaryImage; only on a mesh
+     */
+    unsigned int add(const Image              &image,
+                     const std::vector<Term>  &of_image,
+                     const dealii::Point<dim> *twice_planes = nullptr);
     void         make_room();
 
     unsigned int size() const
@@ -49,6 +53,12 @@ namespace PeriDeal
     const Image &operator[](const unsigned int image) const
     {
       return images[image];
+    }
+
+    /** Those of the BoundaryImage, on a mesh. */
+    const dealii::Point<dim> &twice_planes(const unsigned int image) const
+    {
+      return planes_of_mesh[image];
     }
 
     /** Visit what an image follows from: visit(term). */
@@ -124,13 +134,15 @@ namespace PeriDeal
     std::size_t memory_consumption() const;
 
   private:
-    const Nodes<dim>           &nodes;
-    std::vector<Image>          images;
-    std::vector<std::size_t>    starts{0};
-    std::vector<Term>           terms;
-    mutable std::vector<double> values, forces;
-    std::vector<double>         kept_forces;
-    mutable Vector              passed;
-    std::vector<unsigned int>   pulled; // the unknowns of all terms, in ascending order
+    const Nodes<dim>               &nodes;
+    std::vector<Image>              images;
+    std::vector<dealii::Point<dim>> planes_of_mesh;
+    std::vector<std::size_t>        starts{0};
+    std::vector<Term>               terms;
+    std::vector<unsigned int>       pulled; // the nodes of all terms, in ascending order
+    std::vector<unsigned int>       places; // of each term's node in these
+    mutable std::vector<double>     values, forces, sums; // sums: of the pulled nodes
+    std::vector<double>             kept_forces;
+    mutable Vector                  passed; // where there are other processes
   };
 } // namespace PeriDeal
