@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/analysis/bond_intensities.h>
+#include <perideal/laws/entropy_of_deformation.h>
 #include <perideal/operators/solid/state_operator.h>
 #include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/lists.h>
@@ -167,6 +168,27 @@ namespace PeriDeal
           }
         return Utilities::MPI::sum(sum, handler.get_communicator()) /
                Utilities::MPI::sum(volume, handler.get_communicator());
+      }
+
+      std::vector<double> entropies_of_deformation(const Vector &change) const override
+      {
+        // Of the displacement alone: the dilatations have thermal extensions taken off.
+        Vector at_rest(this->displacement);
+        at_rest                           = 0.;
+        const std::vector<double> taken   = nodal_dilatations(states->bonds(), at_rest);
+        std::vector<double>       entropy = nodal_dilatations(states->bonds(), this->displacement);
+        for (unsigned int i = 0; i < entropy.size(); ++i)
+          {
+            const Point<dim> &p = node_set->position(i);
+            entropy[i]          = node_set->volume(i) *
+                         entropy_of_deformation(scene.material.moduli(p),
+                                                scene.material.thermal_expansion.value(p),
+                                                dim,
+                                                scene.elasticity.plane,
+                                                entropy[i] - taken[i],
+                                                change.local_element(i));
+          }
+        return entropy;
       }
 
       std::vector<StressIntensity> stress_intensities(const double time) const override

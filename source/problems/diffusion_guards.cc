@@ -73,7 +73,7 @@ namespace PeriDeal
                values_not_finite(problem.solution, 1, place_of, problem.field_name(), t);
     problem.ledger.see(problem.stepper->entered(), problem.dofs().get_communicator());
     const auto before = op.n_applications();
-    const auto given  = range_of_given(scene, op);
+    const auto given  = problem.heated_by_solid ? std::nullopt : range_of_given(scene, op);
     const Trip trip   = growth.look(op,
                                   problem.solution,
                                   t,

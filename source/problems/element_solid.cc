@@ -7,6 +7,7 @@
 
 #include <perideal/analysis/coupling_certificate.h>
 #include <perideal/base/user_error.h>
+#include <perideal/laws/entropy_of_deformation.h>
 #include <perideal/operators/solid/elastic_elements.h>
 
 #include <algorithm>
@@ -189,6 +190,40 @@ namespace PeriDeal
                Utilities::MPI::sum(volume, handler.get_communicator());
       }
 
+      std::vector<double> entropies_of_deformation(const Vector &change) const override
+      {
+        // At nodes beside cells that carry nothing, of all of their volume the mean of the others.
+        Vector sums(elements->node_layout()), parts(elements->node_layout());
+        change.update_ghost_values();
+        visit_cells(
+          QGauss<dim>(handler.get_fe().degree + 1),
+          [&](const auto &values, const unsigned int q, const auto &indices, const auto &gradient) {
+            if (elements->cut_cells()[values.get_cell()->active_cell_index()])
+              return;
+            const Point<dim> p       = values.quadrature_point(q);
+            const double     entropy = entropy_of_deformation(scene.material.moduli(p),
+                                                          scene.material.thermal_expansion.value(p),
+                                                          dim,
+                                                          scene.elasticity.plane,
+                                                          trace(gradient),
+                                                          value_at(values, q, indices, change));
+            for (unsigned int i = 0; i < indices.size(); ++i)
+              {
+                const double part = values.JxW(q) * values.shape_value(i, q);
+                sums(indices[i]) += part * entropy;
+                parts(indices[i]) += part;
+              }
+          });
+        change.set_ghost_state(false);
+        sums.compress(VectorOperation::add);
+        parts.compress(VectorOperation::add);
+        std::vector<double> entropies(sums.locally_owned_size(), 0.);
+        for (unsigned int i = 0; i < entropies.size(); ++i)
+          if (parts.local_element(i) != 0.)
+            entropies[i] = volume(i) * sums.local_element(i) / parts.local_element(i);
+        return entropies;
+      }
+
       std::vector<StressIntensity> stress_intensities(const double time) const override
       {
         if constexpr (dim == 2)
@@ -329,6 +364,18 @@ namespace PeriDeal
         this->displacement.set_ghost_state(false);
       }
 
+      /** What numbers of nodes, with current ghosts, are at the point q of a cell. */
+      static double value_at(const FEValues<dim>                        &values,
+                             const unsigned int                          q,
+                             const std::vector<types::global_dof_index> &indices,
+                             const Vector                               &at_nodes)
+      {
+        double value = 0.;
+        for (unsigned int i = 0; i < indices.size(); ++i)
+          value += at_nodes(indices[i]) * values.shape_value(i, q);
+        return value;
+      }
+
       /** The stress in a cell, with the material at p and the temperature at the point q. */
       SymmetricTensor<2, 3> stress_at(const FEValues<dim>                        &values,
                                       const unsigned int                          q,
@@ -337,12 +384,8 @@ namespace PeriDeal
                                       const Point<dim>                           &p) const
       {
         const Vector &at_nodes = elements->temperature_change();
-        double        change   = 0.;
-        if (at_nodes.size() == 0)
-          change = scene.elasticity.temperature_change.value(p);
-        else
-          for (unsigned int i = 0; i < indices.size(); ++i)
-            change += at_nodes(indices[i]) * values.shape_value(i, q);
+        const double  change = at_nodes.size() == 0 ? scene.elasticity.temperature_change.value(p) :
+                                                      value_at(values, q, indices, at_nodes);
         return stress_of_strain(symmetrize(gradient), scene, p, change);
       }
 

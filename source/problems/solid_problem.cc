@@ -5,6 +5,7 @@
 #include <perideal/mesh/node_keys.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/warmed_by_deformation.h>
 #include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_tools.h>
@@ -16,6 +17,7 @@
 #include "crack_growth.h"
 #include "damage_of_solid.h"
 #include "finite_results.h"
+#include "heat_of_deformation.h"
 #include "solid_cost.h"
 #include "solid_error.h"
 #include "solid_fields.h"
@@ -40,13 +42,6 @@ namespace PeriDeal
 
   template <int dim>
   SolidProblem<dim>::~SolidProblem() = default;
-
-
-  template <int dim>
-  std::string SolidProblem<dim>::steady_name() const
-  {
-    return "the equilibrium";
-  }
 
 
   template <int dim>
@@ -198,7 +193,11 @@ namespace PeriDeal
     constexpr double share = 0.01; // of the end time, if no step is given
     if (scene.warms_slowly())      // `Time step` is that of the heat problem
       {
-        const bool in_steps = scene.material.fracture_energy || scene.material.critical_stretch ||
+        const bool of_both = absolute_reference(scene.elasticity).has_value();
+        if (of_both && scene.time.time_step > 0.)
+          return scene.time.time_step;
+        const bool in_steps = of_both || scene.material.fracture_energy ||
+                              scene.material.critical_stretch ||
                               scene.elasticity.has_full_kinematics() || !scene.cracks.tips.empty();
         return (in_steps ? share : 1.) * scene.time.end_time;
       }
@@ -249,17 +248,21 @@ namespace PeriDeal
       return move(from, to, report, context);
     if (scene.warms_slowly() && !loading->is_inside_step())
       take_temperature();
-    Timings::Scope  scope(this->timings, "solving");
     const AfterStep after_round = [&](const double t) {
       tell_first_break(*this, t, context);
       if (context.after_step)
         context.after_step(t);
     };
     const AfterStep before_breaks = [&](const double t) { add_totals(t, context); };
-    with_formulas(this->dofs().get_communicator(), [&] {
+    solve_loading([&] {
       loading->is_inside_step() ? loading->go_on(displacement, after_round, before_breaks) :
                                   loading->step(displacement, to, after_round, before_breaks);
     });
+    if (warming)
+      warming->add(*this, to, [&] {
+        take_temperature();
+        solve_loading([&] { loading->renew(displacement); });
+      });
     n_iterations = loading->n_iterations();
     tell_first_break(*this, to, context);
     told->tell(*this);
@@ -309,6 +312,8 @@ namespace PeriDeal
     archive.exchange("iterations", n_iterations);
     this->timings.exchange(archive);
     op().exchange(archive, keys);
+    if (warming)
+      warming->exchange(archive, *this, keys);
     if (loading)
       loading->exchange(archive, keys);
     if (stepper)
@@ -411,14 +416,27 @@ namespace PeriDeal
     loading                  = std::make_unique<SlowLoading>(op(), std::move(solver), options);
     if (scene.guards.goes_on())
       loading->findings().let_wait();
+    if (heat == nullptr || !absolute_reference(scene.elasticity))
+      return;
+    warming               = std::make_unique<HeatOfDeformation<dim>>();
+    heat->heated_by_solid = true;
+  }
+
+
+  template <int dim>
+  void SolidProblem<dim>::solve_loading(const std::function<void()> &action)
+  {
+    Timings::Scope scope(this->timings, "solving");
+    with_formulas(this->dofs().get_communicator(), action);
   }
 
 
   template <int dim>
   void SolidProblem<dim>::begin_loading(const RunContext &context)
   {
-    Timings::Scope scope(this->timings, "solving");
-    with_formulas(this->dofs().get_communicator(), [&] { loading->begin(displacement, 0.); });
+    solve_loading([&] { loading->begin(displacement, 0.); });
+    if (warming)
+      warming->begin(*this);
     n_iterations = loading->n_iterations();
     tell_first_break(*this, 0., context);
     told->tell(*this);
@@ -428,22 +446,7 @@ namespace PeriDeal
   template <int dim>
   nlohmann::ordered_json SolidProblem<dim>::describe_solving() const
   {
-    nlohmann::ordered_json entry{{"iterations", n_iterations}};
-    if (stepper)
-      {
-        entry["stepper"]     = stepper->name();
-        entry["steps"]       = stepper->cost().steps;
-        entry["iterations"]  = stepper->cost().iterations;
-        entry["time step"]   = stepper->current_step();
-        entry["stable step"] = {{"sharp", stable_step}, {"method", "verlet"}};
-      }
-    if (loading && !scene.time.steady)
-      {
-        entry["steps"] = loading->n_steps();
-        if (!scene.warms_slowly()) // then equilibria are at times of output
-          entry["time step"] = load_step();
-      }
-    return entry;
+    return describe_solving_of(*this);
   }
 
 

@@ -252,7 +252,31 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  json describe_solving_of(const SolidProblem<dim> &problem)
+  {
+    const Scene<dim> &scene = problem.scene;
+    json              entry{{"iterations", problem.n_iterations}};
+    if (problem.stepper)
+      {
+        entry["stepper"]     = problem.stepper->name();
+        entry["steps"]       = problem.stepper->cost().steps;
+        entry["iterations"]  = problem.stepper->cost().iterations;
+        entry["time step"]   = problem.stepper->current_step();
+        entry["stable step"] = {{"sharp", problem.stable_step}, {"method", "verlet"}};
+      }
+    if (problem.loading && !scene.time.steady)
+      {
+        entry["steps"] = problem.loading->n_steps();
+        if (!scene.warms_slowly()) // then equilibria are at times of output
+          entry["time step"] = problem.load_step();
+      }
+    return entry;
+  }
+
+
 #define PERIDEAL_INSTANTIATE(dim)                                               \
+  template json   describe_solving_of(const SolidProblem<dim> &);               \
   template void   describe_solid_scene(const Scene<dim> &, const bool, json &); \
   template double find_force_scale(const SolidProblem<dim> &, const Scene<dim> &, const double);
   PERIDEAL_INSTANTIATE(1)

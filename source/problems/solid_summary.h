@@ -18,6 +18,10 @@ namespace PeriDeal
                             const bool              at_the_end,
                             nlohmann::ordered_json &summary);
 
+  /** Steps and iterations of Problem::describe_solving(). */
+  template <int dim>
+  nlohmann::ordered_json describe_solving_of(const SolidProblem<dim> &problem);
+
   /**
    * The size of forces in the body now, against which a sum of forces that should be zero is small
    * or not: what passes through it (@p throughput), and its mean Young modulus times the area of a

@@ -9,6 +9,7 @@
 
 #include "diffusion_totals.h"
 #include "finite_results.h"
+#include "heat_of_deformation.h"
 #include "solid_sides.h"
 #include "solid_summary.h"
 
@@ -152,6 +153,12 @@ namespace PeriDeal
       context.record.balances[problem.name()]["stress intensity"] = ends;
     if (problem.heat != nullptr)
       add_heat_totals_of_solid(*problem.heat, t, context);
+    if (const auto *const heat = problem.heat_of_deformation())
+      {
+        row("heat of deformation since start", heat->released());
+        context.record.balances[problem.name()]["heat balance"]["heat of deformation"] =
+          heat->released();
+      }
   }
 
 

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/elasticity_control.h>
+#include <perideal/scene/warmed_by_deformation.h>
 
 namespace PeriDeal
 {
@@ -58,6 +59,21 @@ namespace PeriDeal
       "0",
       "1",
       "With `Temperature change = computed` that changes in time: the part of its heat that a bond still conducts once it has broken, from 0 (nothing) to 1 (as before).");
+    declare(
+      "Heat of deformation",
+      EntryType::boolean,
+      "false",
+      "",
+      "With `Temperature change = computed` that changes in time: a body that expands cools, one that is compressed warms, by the source -T0 beta d(theta)/dt of heat per volume, "
+      "with theta the trace of the strain in three dimensions, beta = 3 K alpha of bulk modulus and `Thermal expansion`, and T0 = `Reference temperature` - `Absolute zero`. "
+      "Moduli, and `Density` times `Heat capacity` (at constant strain), need the same unit of energy. Heat and equilibrium agree at each `Time step`, at each hundredth of "
+      "`End time` where none is given, and where results are written.");
+    declare(
+      "Absolute zero",
+      EntryType::text,
+      "",
+      "temperature",
+      "With `Heat of deformation = true`, a number: absolute zero on the scale of the temperatures of the scene, 0 in kelvins, -273.15 in degrees Celsius.");
     declare(
       "Contact",
       EntryType::choice,
@@ -161,6 +177,8 @@ namespace PeriDeal
       error("Broken bonds conduct",
             "has no effect: 'Temperature change' is '" + text("Temperature change") +
               "'. Use 'Temperature change = computed', or leave the entry out.");
+    boolean("Heat of deformation"); // true or false
+    check_heat_of_deformation(*this);
     if (dim != 2 && is_given("Plane"))
       error("Plane",
             "found '" + text("Plane") + "', but 'Dimension' is " + std::to_string(dim) +

@@ -4,6 +4,7 @@
 // The heat problem that an elastic scene describes beside its equilibrium.
 
 #include <perideal/base/user_error.h>
+#include <perideal/scene/warmed_by_deformation.h>
 
 #include "scene_checks.h"
 
@@ -95,6 +96,10 @@ namespace PeriDeal
       read_sections(scene, *heat);
       heat->validate();
     });
+    scene.elasticity.refuse(
+      absolute_reference(scene.elasticity) && heat->time.steady,
+      "Heat of deformation",
+      "found 'true', but the heat problem is steady: then nothing deforms. Leave it out, or 'Steady = true' in section 'Time'.");
     scene.heat = heat;
   }
 

@@ -258,6 +258,17 @@ namespace PeriDeal
   }
 
 
+  void SlowLoading::renew(Vector &u)
+  {
+    last = u;
+    solve(u, now);
+    op.unbalanced(unbalanced, u, now);
+    so_far.work += work_of_forces.step(last, u, unbalanced, now);
+    breaking = {now, 0., false, false, now, breaking.most};
+    change_bonds(u, now, {});
+  }
+
+
   void SlowLoading::exchange(Archive &archive, const NodeKeys &keys)
   {
     archive.exchange("last equilibrium", last, keys);

@@ -49,6 +49,7 @@ SCENES = {
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
     "loading": [("fracture/following_zone.prm", {"Domain/Cells": "25, 37", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {}, IMPLICIT),
+                ("elasticity/heat_of_deformation.prm", {"Domain/Cells": "12, 12", "Time/End time": "1", "Output/Write at": "0.1"}, IMPLICIT),
                 ("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13", "Elasticity/Breaking": "at rest"}, IMPLICIT),
                 ("fracture/scattered_strength.prm", {"Domain/Cells": "20, 20", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("elasticity/growing_crack.prm", {"Domain/Cells": "66, 11", "Solver/Tolerance": "1e-13"}, IMPLICIT),

@@ -7,6 +7,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <perideal/laws/elasticity.h>
+#include <perideal/laws/entropy_of_deformation.h>
 #include <perideal/laws/gauss_rule.h>
 #include <perideal/laws/kernel.h>
 
@@ -350,6 +351,59 @@ TEST(ElasticityLaws, von_mises_of_textbook_states)
   sheet[1][1] = 1.;
   EXPECT_NEAR(von_mises(sheet), std::sqrt(9. - 3. + 1.), 1e-14);
   EXPECT_NEAR(von_mises(sheet, 2.), std::sqrt(0.5 * (4. + 1. + 1.)), 1e-14);
+}
+
+
+namespace
+{
+  /** alpha tr(sigma) + 9 K alpha^2 dT, of a body that is as free across as it is. */
+  template <int dim>
+  double entropy_of_stress(const Moduli    &moduli,
+                           const PlaneState plane,
+                           const double     alpha,
+                           const double     trace,
+                           const double     dT)
+  {
+    const SymmetricTensor<2, dim> strain = trace / dim * dealii::unit_symmetric_tensor<dim>();
+    const auto                    sigma  = stress<dim>(moduli, plane, strain, alpha * dT);
+    double                        szz    = 0.;
+    if constexpr (dim == 2)
+      szz = stress_zz(moduli, plane, sigma, alpha * dT);
+    const double bulk = moduli.young() / (3. * (1. - 2. * moduli.poisson()));
+    return -3. * alpha * pressure<dim>(sigma, szz) + 9. * bulk * alpha * alpha * dT;
+  }
+} // namespace
+
+
+TEST(ElasticityLaws, entropy_of_deformation)
+{
+  const double alpha = 1e-3, trace = 0.02, dT = -7.;
+  for (const double nu : poisson_ratios)
+    {
+      const Moduli moduli = young_and_poisson(5., nu);
+      for (const PlaneState plane : {PlaneState::stress, PlaneState::strain})
+        {
+          const double of_stress[] = {entropy_of_stress<1>(moduli, plane, alpha, trace, dT),
+                                      entropy_of_stress<2>(moduli, plane, alpha, trace, dT),
+                                      entropy_of_stress<3>(moduli, plane, alpha, trace, dT)};
+          for (unsigned int dim = 1; dim <= 3; ++dim)
+            {
+              const double s = entropy_of_deformation(moduli, alpha, dim, plane, trace, dT);
+              EXPECT_NEAR(s, of_stress[dim - 1], 1e-12 * std::abs(s) + 1e-15) << dim << ' ' << nu;
+            }
+        }
+    }
+  // Free expansion takes up 9 K alpha^2 dT in all of them.
+  const Moduli moduli = young_and_poisson(6., 0.25);
+  EXPECT_NEAR(entropy_of_deformation(moduli, alpha, 1, PlaneState::stress, alpha * dT, dT),
+              36. * alpha * alpha * dT,
+              1e-15);
+  EXPECT_NEAR(entropy_of_deformation(moduli, alpha, 2, PlaneState::stress, 2. * alpha * dT, dT),
+              36. * alpha * alpha * dT,
+              1e-15);
+  EXPECT_NEAR(entropy_of_deformation(moduli, alpha, 3, PlaneState::stress, 3. * alpha * dT, dT),
+              36. * alpha * alpha * dT,
+              1e-15);
 }
 
 

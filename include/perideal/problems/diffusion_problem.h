@@ -119,6 +119,8 @@ namespace PeriDeal
     std::unique_ptr<Stepper> stepper; // null if steady
     HeatLedger               ledger;  // of the run from the start, unless steady
     unsigned int             steady_iterations = 0;
+    bool                     heated_by_solid   = false; // that deforms: temperatures may leave
+                                                        // the range of those that are given
 
   protected:
     double reached       = 0.; // the time of the solution, but for steps within a span

@@ -18,6 +18,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,6 +32,8 @@ namespace PeriDeal
   class DamageOfSolid;
   template <int dim>
   class DiffusionProblem;
+  template <int dim>
+  class HeatOfDeformation;
 
   /**
    * A body that deforms, in one model of a scene: dim unknowns at each node, interleaved. Functions
@@ -48,7 +51,11 @@ namespace PeriDeal
       return "displacement";
     }
 
-    std::string   steady_name() const override;
+    std::string steady_name() const override
+    {
+      return "the equilibrium";
+    }
+
     const Vector &state() const override;
     unsigned int  n_components() const override
     {
@@ -109,6 +116,13 @@ namespace PeriDeal
     /** The mean stress over the volume of the body: what the body as a whole carries. */
     virtual dealii::SymmetricTensor<2, 3> mean_stress() const = 0;
 
+    /**
+     * The integral of entropy_of_deformation() over each owned node's volume, as it deforms now at
+     * these temperature changes of the nodes. What has lost all that holds it has none.
+     */
+    virtual std::vector<double> entropies_of_deformation(
+      const Vector &temperature_change) const = 0;
+
     /** At the ends of cracks, where there is room for rings (crack_end_integrals()). */
     virtual std::vector<StressIntensity> stress_intensities(const double /*time*/) const
     {
@@ -117,6 +131,12 @@ namespace PeriDeal
 
     /** The stress of each own node or cell, with its phase. */
     virtual std::vector<StressSample> stress_samples() const = 0;
+
+    /** Heat that deforming the body has set free since the start; null: that is not computed. */
+    const HeatOfDeformation<dim> *heat_of_deformation() const
+    {
+      return warming.get();
+    }
 
     /** Surfaces of what has broken, for files, on all processes. */
     NewCracks new_cracks() const override;
@@ -139,6 +159,7 @@ namespace PeriDeal
     StepperOptions stepper_options() const;
     void           make_loading();
     void           begin_loading(const RunContext &context);
+    void           solve_loading(const std::function<void()> &action);
     void           move(const double                             from,
                         const double                             to,
                         const std::function<void(const double)> &report,
@@ -150,6 +171,8 @@ namespace PeriDeal
     MotionParts                         moving;
     std::unique_ptr<CrackGrowth<dim>>   cracks; // that run through breaking bonds
     std::unique_ptr<DamageOfSolid<dim>> told;   // of damage, to the heat
+
+    std::unique_ptr<HeatOfDeformation<dim>> warming;
   };
 
 

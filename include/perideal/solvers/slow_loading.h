@@ -79,6 +79,12 @@ namespace PeriDeal
     /** The rest of a step whose beginning was kept by exchange(); as step(). Collective. */
     void go_on(Vector &u, const AfterStep &after_round = {}, const AfterStep &before_breaks = {});
 
+    /**
+     * The equilibrium again, at the time of the last one, after thermal loads have changed: no step
+     * of its own. Throws UserError as step() does. Collective.
+     */
+    void renew(Vector &u);
+
     /** Within a step: there is a rest to go_on() with. */
     bool is_inside_step() const
     {
