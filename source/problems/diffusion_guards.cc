@@ -64,22 +64,27 @@ namespace PeriDeal
   template <int dim>
   Trip DiffusionGuards<dim>::watch(const double t)
   {
-    const PlaceOfNode  place_of = place_of_nodes(problem);
-    const Scene<dim>  &scene    = problem.scene;
-    DiffusionOperator &op       = problem.op();
-    if (scene.time.steady)
+    const PlaceOfNode  place_of   = place_of_nodes(problem);
+    const Scene<dim>  &scene      = problem.scene;
+    DiffusionOperator &op         = problem.op();
+    const auto         not_finite = [&]() {
       return extent_of(problem.solution).finite ?
-               Trip() :
-               values_not_finite(problem.solution, 1, place_of, problem.field_name(), t);
+                       Trip() :
+                       values_not_finite(problem.solution, 1, place_of, problem.field_name(), t);
+    };
+    if (scene.time.steady)
+      return not_finite();
     problem.ledger.see(problem.stepper->entered(), problem.dofs().get_communicator());
     const auto before = op.n_applications();
-    const auto given  = problem.heated_by_solid ? std::nullopt : range_of_given(scene, op);
-    const Trip trip   = growth.look(op,
-                                  problem.solution,
-                                  t,
-                                  given ? &*given : nullptr,
-                                  place_of,
-                                  problem.field_name());
+    const auto given  = range_of_given(scene, op);
+    // What a solid sets free may lead anywhere.
+    const Trip trip = problem.heated_by_solid ? not_finite() :
+                                                growth.look(op,
+                                                            problem.solution,
+                                                            t,
+                                                            given ? &*given : nullptr,
+                                                            place_of,
+                                                            problem.field_name());
     op.carry_over_applications(before - op.n_applications()); // a look is none of the run's
     const Trip of_step = steps.look(*problem.stepper, scene.time.end_time, t);
     return trip ? trip : of_step;

@@ -94,23 +94,17 @@ def adiabatic():
     table = Comparison("Uniform strain without conduction")
     for body, more in BODIES.items():
         change, stress = expected(body)
-        for law in ("auto", "none"):
-            run = run_scene(BODY, {**QUIET, **more, "Peridynamics/Surface correction": law, **({"Models": PD} if law == "none" else {})})
-            for model in run.summary["models"]:
-                what = f"{body}, {model} ({law})"
-                for row in run.rows(model):
-                    table.add(f"{what}: T at ({row['x']})", row["temperature"] - 20, change, relative=1e-8)
-                # Collapsed stresses of cut families are not those of the body.
-                if law == "auto":
-                    table.add(f"{what}: sxx", run.rows(model)[0]["sxx"], stress, relative=AUTO[model])
-                balance = run.model(model)["heat balance"]
-                table.add(f"{what}: heat of deformation", balance["heat of deformation"], STORAGE * change, relative=1e-8)
-                table.add(f"{what}: heat stored", balance["cumulative"]["stored"], STORAGE * change, relative=1e-8)
-                check_less(abs(balance["cumulative"]["imbalance"]), 1e-12 * abs(STORAGE * change), f"{what}: imbalance")
+        run = run_scene(BODY, {**QUIET, **more})
+        for model in run.summary["models"]:
+            what = f"{body}, {model}"
+            for row in run.rows(model):
+                table.add(f"{what}: T at ({row['x']})", row["temperature"] - 20, change, relative=1e-8)
+            table.add(f"{what}: sxx", run.rows(model)[0]["sxx"], stress, relative=1e-9)
+            balance = run.model(model)["heat balance"]
+            table.add(f"{what}: heat of deformation", balance["heat of deformation"], STORAGE * change, relative=1e-8)
+            table.add(f"{what}: heat stored", balance["cumulative"]["stored"], STORAGE * change, relative=1e-8)
+            check_less(abs(balance["cumulative"]["imbalance"]), 1e-10 * abs(STORAGE * change), f"{what}: imbalance")
     table.show()
-
-
-AUTO = {FEM: 1e-8, PD: 1e-8, COUPLED: 1e-8}
 
 
 def block_between_plates(times, rise=0.1, cells=50, dt=1e-2):
@@ -174,7 +168,7 @@ def relaxing():
     bulk = 70e9 / (3 * 0.34)
     modulus, beta = bulk + 4 / 3 * 70e9 / 2.66, 3 * bulk * 23e-6
     warmer = 293.15 * beta * 1e-3 / (2700 * 900)
-    runs = [run_scene(SCENE, {**QUIET, "Time/Time step": str(step)}) for step in (0.05, 0.025)]
+    runs = [run_scene(SCENE, {**QUIET, "Domain/Cells": "12, 12", "Time/Time step": str(step)}) for step in (0.1, 0.05)]
     for model in (FEM, PD, COUPLED):
         table.add(f"{model}: T, insulated", insulated.probe(model, (0.005, 0.005), column="temperature") - 20, warmer, relative=1e-7)
         force = [-run.total("force on right in x", model) for run in (insulated, isothermal)]
@@ -188,16 +182,18 @@ def relaxing():
                 of_force.append(abs(-run.total("force on right in x", model, time=t) / force[1] - pressure / (modulus * 1e-3)))
             gaps.append((max(of_heat), max(of_force)))
             balance = run.model(model)["heat balance"]
-            check_less(abs(balance["cumulative"]["imbalance"]), 1e-6 * abs(balance["heat of deformation"]), f"{model}: heat lost")
+            check_less(abs(balance["cumulative"]["imbalance"]), HEAT_LOST * abs(balance["heat of deformation"]), f"{model}: heat lost")
         table.add_limit(f"{model}: T at the middle, largest gap / {warmer:.2f} K", gaps[1][0], STEPS[model][0])
         table.add_limit(f"{model}: force, largest gap / isothermal force", gaps[1][1], STEPS[model][1])
         table.add_limit(f"{model}: gap of T with half the step / with the step", gaps[1][0] / gaps[0][0], 0.6)
     table.show()
 
 
-FORCE = {FEM: 1e-8, PD: 1e-2, COUPLED: 1e-8}
-RATIO = {FEM: 1e-7, PD: 1e-3, COUPLED: 1e-7}
-STEPS = {FEM: (0.1, 0.01), PD: (0.1, 0.01), COUPLED: (0.1, 0.01)}
+HEAT_LOST = 1e-5  # the tolerance in time; measured with twice the steps: 4e-6
+# Measured: peridynamics 4.0e-3 and 1.0e-4, its modulus at m = 3.
+FORCE = {FEM: 1e-8, PD: 6e-3, COUPLED: 1e-8}
+RATIO = {FEM: 1e-8, PD: 1.5e-4, COUPLED: 1e-8}
+STEPS = {FEM: (2.2e-2, 7.4e-4), PD: (2.2e-2, 7.4e-4), COUPLED: (2.2e-2, 7.4e-4)}  # 1.46e-2, 4.9e-4: of first order in the step
 
 
 def tearing():
@@ -249,7 +245,7 @@ def mistakes():
                          ({"Elasticity/Temperature change": "1", "Elasticity/Reference temperature": "0", "Initial and source/Initial value": "0"}, name, "computed"),
                          ({"Material/Heat capacity": "1 + T"}, name, "Heat capacity"),
                          ({"Finite elements/Capacity": "consistent", "Models": FEM}, name, "lumped"),
-                         ({"Material/Heat capacity": "1e-6"}, name, "unit of energy"),
+                         ({"Material/Heat capacity": "1e-6", "Elasticity/Plane": "strain"}, name, "unit of energy"),
                          ({"Material/Poisson ratio": "0.5"}, name, "Poisson ratio"),
                          ({"Physics": "electricity", "Boundary conditions/Displacement": ""}, "Physics")):
         check_message(run_scene(BODY, {**QUIET, **more}, expect_error=True), *words)
