@@ -45,13 +45,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const Vector &SolidProblem<dim>::state() const
-  {
-    return displacement;
-  }
-
-
-  template <int dim>
   std::vector<std::string> SolidProblem<dim>::columns() const
   {
     return solid_columns(scene);

@@ -56,8 +56,12 @@ namespace PeriDeal
       return "the equilibrium";
     }
 
-    const Vector &state() const override;
-    unsigned int  n_components() const override
+    const Vector &state() const override
+    {
+      return displacement;
+    }
+
+    unsigned int n_components() const override
     {
       return dim;
     }
