@@ -212,12 +212,12 @@ def tearing():
             check_close(b, a, absolute=1e-9 * -min(heat), what=f"{what}: heat stored")
 
 
-TORN = 0.05
+TORN = 7e-3  # measured: 4.7e-3, of the column that no bond holds any more
 
 
 def ranks():
     """The same on 1, 2 and 4 processes."""
-    for what, scene, more in (("block", SCENE, {"Time/End time": "0.5", "Output/Write at": "0.1", "Domain/Cells": "12, 12"}), ("space", BODY, BODIES["space"])):
+    for what, scene, more in (("block", SCENE, {"Time/End time": "0.2", "Time/Time step": "0.05", "Output/Write at": "0.1", "Domain/Cells": "10, 10"}), ("space", BODY, BODIES["space"])):
         runs = [run_scene(scene, {**QUIET, **more}, ranks=n) for n in (1, 2, 4)]
         for other in runs[1:]:
             for column in ("ux", "sxx", "temperature"):
