@@ -25,14 +25,9 @@ namespace PeriDeal
     template <int dim>
     std::vector<double> entropies(const SolidProblem<dim> &solid)
     {
-      // Both have the nodes of the model, each with its own ghosts.
-      Vector change;
-      solid.op().initialize_nodal_vector(change);
-      for (unsigned int i = 0; i < change.locally_owned_size(); ++i)
-        change.local_element(i) =
-          solid.heat->solution.local_element(i) - solid.scene.elasticity.reference_temperature;
-      const std::vector<double> list = solid.entropies_of_deformation(change);
-      const bool                fine =
+      const std::vector<double> list =
+        solid.entropies_of_deformation(computed_temperature_change(solid));
+      const bool fine =
         std::all_of(list.begin(), list.end(), [](const double s) { return std::isfinite(s); });
       solid.scene.elasticity.refuse(
         Utilities::MPI::min(fine ? 1 : 0, solid.dofs().get_communicator()) == 0,
@@ -104,6 +99,19 @@ namespace PeriDeal
       throw UserError(message.str());
     }
   } // namespace
+
+
+  template <int dim>
+  Vector computed_temperature_change(const SolidProblem<dim> &solid)
+  {
+    // Both have the nodes of the model, each with its own ghosts.
+    Vector change;
+    solid.op().initialize_nodal_vector(change);
+    for (unsigned int i = 0; i < change.locally_owned_size(); ++i)
+      change.local_element(i) =
+        solid.heat->solution.local_element(i) - solid.scene.elasticity.reference_temperature;
+    return change;
+  }
 
 
   template <int dim>
@@ -185,7 +193,11 @@ namespace PeriDeal
   }
 
 
-  template class HeatOfDeformation<1>;
-  template class HeatOfDeformation<2>;
-  template class HeatOfDeformation<3>;
+#define PERIDEAL_INSTANTIATE(dim)        \
+  template class HeatOfDeformation<dim>; \
+  template Vector computed_temperature_change(const SolidProblem<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

@@ -13,6 +13,11 @@ namespace PeriDeal
   template <int dim>
   class SolidProblem;
 
+  /** Of the owned nodes, what its heat problem has found less `Reference temperature`. */
+  template <int dim>
+  Vector computed_temperature_change(const SolidProblem<dim> &solid);
+
+
   /**
    * The heat that a body at rest sets free when it is compressed and takes up when it expands,
    *

@@ -80,13 +80,7 @@ namespace PeriDeal
     if (heat == nullptr)
       return;
     Timings::Scope scope(this->timings, "thermal loads");
-    // Both have the nodes of the model, each with its own ghosts.
-    Vector change;
-    op().initialize_nodal_vector(change);
-    for (unsigned int i = 0; i < change.locally_owned_size(); ++i)
-      change.local_element(i) =
-        heat->solution.local_element(i) - scene.elasticity.reference_temperature;
-    op().set_temperature_change(change);
+    op().set_temperature_change(computed_temperature_change(*this));
   }
 
 
