@@ -5,13 +5,14 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/base/user_error.h>
+#include <perideal/base/diverged.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/warmed_by_deformation.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 
@@ -25,30 +26,32 @@ namespace PeriDeal
     template <int dim>
     std::vector<double> entropies(const SolidProblem<dim> &solid)
     {
-      const std::vector<double> list =
-        solid.entropies_of_deformation(computed_temperature_change(solid));
-      const bool fine =
-        std::all_of(list.begin(), list.end(), [](const double s) { return std::isfinite(s); });
-      solid.scene.elasticity.refuse(
-        Utilities::MPI::min(fine ? 1 : 0, solid.dofs().get_communicator()) == 0,
-        "Heat of deformation",
-        "found 'true', but 3 K alpha ('Thermal expansion' and the moduli in section 'Material') is not finite everywhere: it needs a 'Poisson ratio' below 1/2.");
-      return list;
+      return solid.entropies_of_deformation(computed_temperature_change(solid));
     }
 
 
-    /** 9 K alpha^2 T0 of a node's volume: what free expansion takes up besides the capacity. */
+    /**
+     * 9 K alpha^2 T0 of a node's volume: what free expansion takes up besides the capacity. 0 where
+     * formulas have no value at the node, which elements need not use.
+     */
     template <int dim>
     double capacity_of_expansion(const SolidProblem<dim> &solid,
                                  const double             T0,
                                  const unsigned int       i)
     {
-      const auto  &material = solid.scene.material;
-      const auto   p        = solid.position(i);
-      const auto   moduli   = material.moduli(p);
-      const double alpha    = material.thermal_expansion.value(p);
-      const double bulk     = moduli.young() / (3. * (1. - 2. * moduli.poisson()));
-      return T0 * 9. * bulk * alpha * alpha * solid.volume(i);
+      try
+        {
+          const auto  &material = solid.scene.material;
+          const auto   p        = solid.position(i);
+          const auto   moduli   = material.moduli(p);
+          const double alpha    = material.thermal_expansion.value(p);
+          const double bulk     = moduli.young() / (3. * (1. - 2. * moduli.poisson()));
+          return T0 * 9. * bulk * alpha * alpha * solid.volume(i);
+        }
+      catch (const UserError &)
+        {
+          return 0.;
+        }
     }
 
 
@@ -96,7 +99,8 @@ namespace PeriDeal
         << " rounds. 9 K alpha^2 T0/(rho c), which is 0.01 to 0.05 in metals and less than 1 in all materials, is "
         << most
         << " here. Check that moduli and 'Density' times 'Heat capacity' in section 'Material' have the same unit of energy, or use a smaller 'Time step' in section 'Time'.";
-      throw UserError(message.str());
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      throw Diverged(message.str(), "solver", none, none, t);
     }
   } // namespace
 
@@ -115,9 +119,35 @@ namespace PeriDeal
 
 
   template <int dim>
+  void HeatOfDeformation<dim>::require(const Scene<dim> &scene)
+  {
+    if (!absolute_reference(scene.elasticity))
+      return;
+    const auto refuse = [&](const bool fault, const std::string &what) {
+      scene.elasticity.refuse(fault,
+                              "Heat of deformation",
+                              "found 'true', which is not for " + what);
+    };
+    refuse(
+      scene.material.storage_depends_on_temperature(),
+      "a 'Heat capacity' or 'Density' of T in section 'Material'. Let them not depend on T there.");
+    refuse(scene.finite_elements.consistent_capacity,
+           "'Capacity = consistent' in section 'Finite elements'. Use 'lumped'.");
+    refuse(scene.domain.coarsening.times > 0,
+           "meshes with 'Coarsening' in section 'Domain'. Leave that out.");
+  }
+
+
+  template <int dim>
   void HeatOfDeformation<dim>::begin(const SolidProblem<dim> &solid)
   {
     const std::vector<double> s = entropies(solid);
+    const bool                fine =
+      std::all_of(s.begin(), s.end(), [](const double value) { return std::isfinite(value); });
+    solid.scene.elasticity.refuse(
+      Utilities::MPI::min(fine ? 1 : 0, solid.dofs().get_communicator()) == 0,
+      "Heat of deformation",
+      "found 'true', but 3 K alpha ('Thermal expansion' and the moduli in section 'Material') is not finite everywhere: it needs a 'Poisson ratio' below 1/2.");
     solid.op().initialize_nodal_vector(counted);
     std::copy(s.begin(), s.end(), counted.begin());
   }
@@ -148,8 +178,11 @@ namespace PeriDeal
             const double left   = -T0 * (s[i] - before) - c * (T - nodes.start.local_element(i)),
                          change = nodes.free.local_element(i) * left / nodes.slope[i];
             T += change;
-            largest = std::max(largest, std::abs(change));
-            scale   = std::max({scale, T0 * std::abs(s[i]) / c, T0 * std::abs(before) / c});
+            if (std::isfinite(change))
+              largest = std::max(largest, std::abs(change));
+            else
+              largest = std::numeric_limits<double>::infinity();
+            scale = std::max({scale, T0 * std::abs(s[i]) / c, T0 * std::abs(before) / c});
           }
         heat.op().distribute(heat.solution, t);
         largest = Utilities::MPI::max(largest, all);

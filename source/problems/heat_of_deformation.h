@@ -36,6 +36,9 @@ namespace PeriDeal
   class HeatOfDeformation
   {
   public:
+    /** Throws UserError where temperatures cannot be changed node by node. Not collective. */
+    static void require(const Scene<dim> &scene);
+
     /** The body is in its first equilibrium: what has deformed it before sets nothing free. */
     void begin(const SolidProblem<dim> &solid);
 

@@ -10,7 +10,6 @@
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/warmed_by_deformation.h>
 #include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/static_solver.h>
 
@@ -18,6 +17,7 @@
 #include <utility>
 
 #include "crack_note.h"
+#include "heat_of_deformation.h"
 #include "physics_factories.h"
 #include "solid_scene_notes.h"
 
@@ -42,26 +42,6 @@ namespace PeriDeal
         way == "in motion" && runs(scene, ModelKind::coupled),
         "Breaking",
         "'in motion' is for 'Models = peridynamics'; bonds of 'coupled' break 'at rest'. Use that, or leave the entry out.");
-    }
-
-
-    /** Where the temperature cannot be changed node by node. */
-    template <int dim>
-    void refuse_heat_of_deformation(const Scene<dim> &scene)
-    {
-      if (!absolute_reference(scene.elasticity))
-        return;
-      const auto refuse = [&](const bool fault, const std::string &what) {
-        scene.elasticity.refuse(fault,
-                                "Heat of deformation",
-                                "found 'true', which is not for " + what);
-      };
-      refuse(scene.material.storage_depends_on_temperature(),
-             "a 'Heat capacity' or 'Density' of T in section 'Material'. Use constants there.");
-      refuse(scene.finite_elements.consistent_capacity,
-             "'Capacity = consistent' in section 'Finite elements'. Use 'lumped'.");
-      refuse(scene.domain.coarsening.times > 0,
-             "meshes with 'Coarsening' in section 'Domain'. Leave that out.");
     }
 
 
@@ -169,7 +149,7 @@ namespace PeriDeal
           else
             ElasticElements<dim>::require(scene, model == ModelKind::coupled);
         refuse_what_no_model_has(scene);
-        refuse_heat_of_deformation(scene);
+        HeatOfDeformation<dim>::require(scene);
         if (scene.elasticity.is_static())
           require_equilibrium(scene);
         if (scene.heat)

@@ -240,6 +240,7 @@ namespace PeriDeal
       if (context.after_step)
         context.after_step(t);
     };
+    // Steps of bodies that warm are not divided: formulas of their totals have to be asked apart.
     const AfterStep before_breaks = [&](const double t) { add_totals(t, context); };
     solve_loading([&] {
       loading->is_inside_step() ? loading->go_on(displacement, after_round, before_breaks) :

@@ -56,11 +56,12 @@ namespace PeriDeal
       "`auto` or a number; euler takes that very step. A step above the stability limit is "
       "refused. Motion: `auto` is 0.8 of the limit of verlet, and 5 times that limit with newmark. Elastic equilibria under loads that depend on t: "
       "the step between two of them, `auto` is a hundredth of End time.");
-    declare("Tolerance",
-            EntryType::number,
-            "1e-4",
-            "1",
-            "Relative accuracy in time of adaptive steppers, between 0 and 1.");
+    declare(
+      "Tolerance",
+      EntryType::number,
+      "1e-4",
+      "1",
+      "Relative accuracy in time of adaptive steppers, between 0 and 1. Not given: 1e-8 with `Heat of deformation` in section `Elasticity`.");
   }
 
 

@@ -99,7 +99,12 @@ namespace PeriDeal
     scene.elasticity.refuse(
       absolute_reference(scene.elasticity) && heat->time.steady,
       "Heat of deformation",
-      "found 'true', but the heat problem is steady: then nothing deforms. Leave it out, or 'Steady = true' in section 'Time'.");
+      "found 'true', but the temperature is steady ('Steady = true' in section 'Time') and does not change with time. Leave one of them out.");
+    // A fraction of a degree is what matters then, of temperatures of hundreds.
+    if (absolute_reference(scene.elasticity))
+      for (const Entry &entry : scene.time.entries())
+        if (entry.name == "Tolerance" && entry.text == entry.default_text)
+          heat->time.tolerance = 1e-8;
     scene.heat = heat;
   }
 

@@ -52,8 +52,8 @@ namespace PeriDeal
     }
 
     /**
-     * Came in between two advances, of the whole body: what nodes that an adapted mesh has more on
-     * sides with given values need.
+     * Came in between two advances, of the whole body: heat of deformation, and what nodes that an
+     * adapted mesh has more on sides with given values need.
      */
     void add(const double heat)
     {
