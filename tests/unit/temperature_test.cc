@@ -69,8 +69,6 @@ namespace PeriDeal
 
   TEST(Temperature, orders_of_the_steppers)
   {
-    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-      GTEST_SKIP() << "hundreds of steps, whose order is the same on any number of processes";
     const Settings both = wall + mirrored + Settings{{"Material/Heat capacity", "1 + T/2"}};
     for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
       {
@@ -86,6 +84,9 @@ namespace PeriDeal
                                                          {"crank nicolson", 2.}})
           {
             const bool is_explicit = order == 1. && stepper != "rkc2";
+            // Thousands of steps, whose order is the same on any number of processes.
+            if (is_explicit && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+              continue;
             const double step   = is_explicit ? 1.2e-4 : 0.05 / 32;
             const double coarse = largest_difference(advanced(problem, stepper, step), exact),
                          fine   = largest_difference(advanced(problem, stepper, 0.5 * step), exact);
