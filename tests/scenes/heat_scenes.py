@@ -10,7 +10,7 @@ Bounds that follow from no theory are at most 1.5 times the gap that was measure
 import sys
 
 import insulated_crack
-from scene_test import Comparison, check, finish, observed_orders, print_table, relative_difference, run_scene
+from scene_test import Comparison, check, check_close, finish, observed_orders, print_table, relative_difference, run_scene
 
 QUIET = {"Output/Fields": "none"}
 STEADY = {"Time/Steady": "true", "Output/Write at": "", "Solver/Tolerance": "1e-12"}
@@ -297,10 +297,20 @@ def temperature_dependent():
     table.show()
 
 
+def narrow_layer():
+    """A layer of a tenth of the side, held by sources in it: both models are of second order."""
+    cells = (40, 80, 160)
+    runs = [run_scene("prm/heat/narrow_layer.prm", {"Domain/Cells": f"{n}, {n}", "Output/Fields": "none"}) for n in cells]
+    for model in ("finite elements", "peridynamics"):
+        errors = [run.error(model) for run in runs]
+        orders = observed_orders([1 / n for n in cells], errors)
+        check_close(orders[-1], 2, absolute=0.08, what=f"narrow layer, {model}: order of {errors}")  # measured: 1.994, 1.948
+
+
 def main():
     parts = {function.__name__: function for function in (layers, composite, harmonics, varying_conductivity, plate_with_hole, convection, gmsh_plate,
                                                           block_with_crack, example_3, bars_2010, closing_crack,
-                                                          temperature_dependent)}
+                                                          temperature_dependent, narrow_layer)}
     for name in sys.argv[1:] or parts:
         parts[name]()
     finish()
