@@ -38,10 +38,6 @@ namespace PeriDeal
         way != "auto" && !scene.material.fracture_energy && !scene.material.critical_stretch,
         "Breaking",
         "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
-      scene.elasticity.refuse(
-        way == "in motion" && runs(scene, ModelKind::coupled),
-        "Breaking",
-        "'in motion' is for 'Models = peridynamics'; bonds of 'coupled' break 'at rest'. Use that, or leave the entry out.");
     }
 
 

@@ -127,8 +127,7 @@ namespace PeriDeal
     constexpr double from = 3., to = 42.; // degrees
     if constexpr (dim == 2)
       {
-        const bool at_rest = !scene.elasticity.breaks_in_motion || runs(scene, ModelKind::coupled);
-        if (!breaks(scene) || !scene.elasticity.is_static() || !at_rest ||
+        if (!breaks(scene) || !scene.elasticity.is_static() || scene.elasticity.breaks_in_motion ||
             !scene.domain.has_lattice())
           return;
         for (unsigned int k = 0; k < scene.cracks.cracks.size(); ++k)
@@ -142,7 +141,7 @@ namespace PeriDeal
                 "crack " + std::to_string(k + 1) + " (section 'Cracks') lies at " +
                 rounded_text(angle) +
                 " degrees to the rows of nodes. In slow loading bonds break in groups where bodies are at rest, and it turns into the rows, where fewest are in its way. "
-                "With 'Breaking = in motion' in section 'Elasticity', which is for 'Models = peridynamics', it hardly does, with 'Solver = dynamics' it does not, nor where the lattice lies along it.");
+                "With 'Breaking = in motion' in section 'Elasticity' it hardly does, with 'Solver = dynamics' it does not, nor where the lattice lies along it.");
           }
       }
   }

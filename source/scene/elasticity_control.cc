@@ -108,7 +108,7 @@ namespace PeriDeal
       "",
       "Of bodies at rest whose bonds break, `in motion`: once the first bonds have broken, the others break in a damped motion from equilibrium to equilibrium; or `at rest`, "
       "in one equilibrium after the other, in each those whose stretch is at least 0.9 of the largest. Then slow cracks are drawn to the rows of the lattice. "
-      "`auto` is in motion; bonds of `Models = coupled` always break at rest.",
+      "`auto` is in motion.",
       {"auto", "in motion", "at rest"});
     parse();
   }

@@ -73,8 +73,9 @@ namespace PeriDeal
             (velocity.local_element(i) + half * inverse_mass[i] * residual.local_element(i)) /
             (1. + slows);
         damped += 4. * slows * kinetic_energy();
-        quiet = op.break_bonds(u, t) > 0 ? 0 : quiet + 1;
-        if (quiet == 0)
+        const bool widened = op.widen_zone(u);
+        quiet              = op.break_bonds(u, t) > 0 ? 0 : quiet + 1;
+        if (quiet == 0 || widened)
           op.residual(residual, u, t);
       }
     return n;

@@ -140,6 +140,7 @@ namespace PeriDeal
           {
             n_last_iterations  = std::numeric_limits<unsigned int>::max(); // worn
             n_first_iterations = 1;
+            x                  = 0.; // what has diverged is no guess
             return control.last_step() + solve(a, b, x, rhs, wanted);
           }
         std::ostringstream message;

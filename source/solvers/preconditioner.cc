@@ -31,6 +31,13 @@ namespace PeriDeal
      * cubic elements are above it.
      */
     constexpr double weakest_link = 0.02;
+
+    /**
+     * Of the diagonal, added to it: fragments that nothing holds any more make the surrogate
+     * singular, and its factorization without it would be that of round-off. (The lowest modes of
+     * a slender body are above 1e-8.)
+     */
+    constexpr double hold_of_fragments = 1e-10;
   } // namespace
 
 
@@ -69,9 +76,10 @@ namespace PeriDeal
 
     data->shifted.copy_from(data->surrogate);
     data->shifted *= b;
+    const double held = 1. + (a == 0. && !op.surrogate_is_exact() ? hold_of_fragments : 0.);
     for_each_entry(data->shifted, [&](const unsigned int i, const auto column, double &value) {
       if (column == capacity.get_partitioner()->local_to_global(i))
-        value = is_free.local_element(i) == 0. ? 1. : value + a * capacity.local_element(i);
+        value = is_free.local_element(i) == 0. ? 1. : held * value + a * capacity.local_element(i);
     });
     for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
       data->inverse_diagonal.local_element(i) =

@@ -22,8 +22,10 @@ namespace PeriDeal
 
   namespace
   {
-    // Stretch over critical stretch: more shortens a step; more would shatter a body in motion.
-    constexpr double begins = 1.02, shatters = 1.05;
+    // Stretch over critical stretch: more shortens a step, where the others break in a motion and
+    // where at rest; more would shatter a body in motion. At rest the load of a break follows from
+    // two equilibria, and what breaks next hangs on it.
+    constexpr double begins_in_motion = 1.02, begins_at_rest = 1.001, shatters = 1.05;
 
 
     /** `, the first at (0, 1), beside the side 'top', which is loaded: ...`. */
@@ -55,6 +57,7 @@ namespace PeriDeal
       op.initialize_vector(*v);
     if (options.breaks_in_motion && op.brittle())
       motion.emplace(op);
+    divides = options.divides_steps && op.brittle();
   }
 
 
@@ -158,7 +161,7 @@ namespace PeriDeal
           after_round(t);
       }
     breaking.is_open = false;
-    if (motion)
+    if (divides)
       breaking.most = op.stretch_over_critical(u);
     if (!breaking.any)
       return;
@@ -180,15 +183,15 @@ namespace PeriDeal
   }
 
 
-  double SlowLoading::shorten(Vector &u)
+  std::pair<double, double> SlowLoading::shorten(Vector &u)
   {
     constexpr double shortest = 1e-3; // of what is left of the step
     double           end      = breaking.goal;
-    if (!motion || !options.divides_steps)
-      return end;
-    for (double most = op.stretch_over_critical(u);
-         most > begins && end - now > shortest * (breaking.goal - now);
-         most = op.stretch_over_critical(u))
+    if (!divides)
+      return {end, 0.};
+    const double begins = motion ? begins_in_motion : begins_at_rest;
+    double       most   = op.stretch_over_critical(u);
+    while (most > begins && end - now > shortest * (breaking.goal - now))
       {
         // Were it linear in t. It is convex where u is: at most this, then.
         const double target = 0.5 * (1. + begins);
@@ -196,8 +199,9 @@ namespace PeriDeal
         end                 = now + part * (end - now);
         u.sadd(part, 1. - part, last);
         solve(u, end);
+        most = op.stretch_over_critical(u);
       }
-    return end;
+    return {end, most};
   }
 
 
@@ -228,14 +232,14 @@ namespace PeriDeal
     else
       size = std::max(size, start_statics(op, u, t, options));
     solve(u, t);
-    const double end = shorten(u);
+    const auto [end, most] = shorten(u);
     op.unbalanced(unbalanced, u, end);
     before.change = u;
     before.change -= last;
     so_far.work += work_of_forces.step(last, u, unbalanced, end);
     so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
     breaking         = {end, 0., false, false, t, breaking.most};
-    if (before_breaks && end < t)
+    if (before_breaks && most > 1.)
       before_breaks(end);
   }
 

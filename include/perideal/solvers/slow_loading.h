@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace PeriDeal
 {
@@ -65,8 +66,8 @@ namespace PeriDeal
     /**
      * From the equilibrium u to that at time t. Bonds break in rounds; after each @p after_round is
      * called with the new equilibrium, when all that the next rounds depend on can be kept. Where
-     * the step is divided @p before_breaks is called with the equilibrium there, of the time it is
-     * given, before its bonds break: forces may be larger than at both ends of the step.
+     * bonds are going to break @p before_breaks is called with the equilibrium of the time it is
+     * given, within the step where that is divided: forces may be larger than at both of its ends.
      * Collective. Throws UserError if there is none to be found, among others since the body has
      * come apart under loads that nothing bears any more; u is the last equilibrium then. So it
      * does where full kinematics end with the body inside out.
@@ -135,18 +136,21 @@ namespace PeriDeal
       bool   any   = false;
     };
 
-    void   solve(Vector &u, const double t);
-    void   reach(Vector &u, const AfterStep &before_breaks);
-    double shorten(Vector &u);
-    bool   break_bonds(Vector &u, const double t);
-    void   change_bonds(Vector &u, const double t, const AfterStep &after_round);
-    void   check_inversion(Vector &u, const double t);
+    void solve(Vector &u, const double t);
+    void reach(Vector &u, const AfterStep &before_breaks);
+    /** Returns the time, and the largest stretch over the critical one then; 0: unknown. */
+    std::pair<double, double> shorten(Vector &u);
+
+    bool break_bonds(Vector &u, const double t);
+    void change_bonds(Vector &u, const double t, const AfterStep &after_round);
+    void check_inversion(Vector &u, const double t);
 
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
     const StaticOptions           options;
-    std::optional<BreakingMotion> motion; // where bonds break in one
-    Vector                        last;   // equilibrium before the step
+    std::optional<BreakingMotion> motion;          // where bonds break in one
+    bool                          divides = false; // steps, where bonds get critical
+    Vector                        last;            // equilibrium before the step
     LastStep                      before;
     Vector                        unbalanced, scratch;
     WorkOfForces                  work_of_forces;

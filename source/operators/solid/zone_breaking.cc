@@ -58,11 +58,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<NodePair> ZoneBreaking<dim>::find_overstretched(const Vector &u, const double share)
+  template <typename Take>
+  void ZoneBreaking<dim>::visit_stretches(const Vector &u, const Take &take) const
   {
-    const auto                              &layout = *nodes.partitioner();
-    std::vector<std::pair<NodePair, double>> found; // stretch over the critical one
-    double                                   most = 0.;
     for (const unsigned int i : bonds.nodes())
       bonds.for_each(i, [&](const auto &bond, const Tensor<1, dim> &xi) {
         const unsigned int j = bond.neighbor;
@@ -74,15 +72,25 @@ namespace PeriDeal
         double stretch = change / xi.norm_square();
         if (!thermal.empty())
           stretch -= 0.5 * (thermal[i] + thermal[j]);
-        const double limit = std::min(critical[i], critical[j]);
-        if (stretch > limit)
-          {
-            NodePair pair{layout.local_to_global(i), layout.local_to_global(j)};
-            std::sort(pair.begin(), pair.end());
-            found.emplace_back(pair, stretch / limit);
-            most = std::max(most, stretch / limit);
-          }
+        take(i, j, stretch, std::min(critical[i], critical[j]));
       });
+  }
+
+
+  template <int dim>
+  std::vector<NodePair> ZoneBreaking<dim>::find_overstretched(const Vector &u, const double share)
+  {
+    const auto                              &layout = *nodes.partitioner();
+    std::vector<std::pair<NodePair, double>> found; // stretch over the critical one
+    double                                   most = 0.;
+    visit_stretches(u, [&](const auto i, const auto j, const double stretch, const double limit) {
+      if (!(stretch > limit))
+        return;
+      NodePair pair{layout.local_to_global(i), layout.local_to_global(j)};
+      std::sort(pair.begin(), pair.end());
+      found.emplace_back(pair, stretch / limit);
+      most = std::max(most, stretch / limit);
+    });
     const MPI_Comm communicator = nodes.communicator();
     most                        = Utilities::MPI::max(most, communicator);
     if (most == 0.)
@@ -95,6 +103,25 @@ namespace PeriDeal
     std::vector<NodePair> all = gather(own, communicator);
     std::sort(all.begin(), all.end());
     return all;
+  }
+
+
+  template <int dim>
+  double ZoneBreaking<dim>::stretch_over_critical(const Vector &u)
+  {
+    double most = 0.;
+    u.update_ghost_values();
+    visit_stretches(u, [&](auto, auto, const double stretch, const double limit) {
+      if (stretch > most * limit)
+        most = stretch / limit;
+    });
+    if (share_of_zone > 0.)
+      cells.visit_stretched(u, [&](const std::array<unsigned int, n_corners> &corners) {
+        most = std::max(most, largest_strain(corners, u, 1.));
+        return false;
+      });
+    u.set_ghost_state(false);
+    return Utilities::MPI::max(most, nodes.communicator());
   }
 
 

@@ -97,6 +97,11 @@ namespace PeriDeal
     bool               widen_zone(const Vector &u) override;
     void               mend_unbalanced(Vector &r, const Vector &u, const double t) const override;
 
+    double stretch_over_critical(const Vector &u) override
+    {
+      return breaking ? breaking->stretch_over_critical(u) : 0.;
+    }
+
     /** Break these bonds of the zone, named alike by all processes, at the state u. Collective. */
     void break_pairs(const std::vector<NodePair> &pairs, const Vector &u, const double t);
 

@@ -62,6 +62,12 @@ namespace PeriDeal
      */
     std::vector<NodePair> find_overstretched(const Vector &u, const double share);
 
+    /**
+     * As ElasticOperator::stretch_over_critical(); cells that are stretched so much that bonds are
+     * to appear there count by their largest principal strain.
+     */
+    double stretch_over_critical(const Vector &u);
+
     /** Of those the boxes around bonds between vertices of a cell, whose cells are parted. */
     std::vector<dealii::BoundingBox<dim>> parted_by(const std::vector<NodePair> &broken) const;
 
@@ -142,6 +148,10 @@ namespace PeriDeal
       NodePair pair;
       double   time;
     };
+
+    /** take(i, j, stretch, critical stretch) for the whole bonds that start at owned nodes. */
+    template <typename Take>
+    void visit_stretches(const Vector &u, const Take &take) const;
 
     void find_critical_stretches(const BodyParameters<dim> &body);
     void find_cells(const dealii::DoFHandler<dim> &dofs);
