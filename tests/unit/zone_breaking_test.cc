@@ -327,3 +327,74 @@ TEST(ZoneBreaking, follows_what_is_stretched)
   check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Domain/Upper corner", "1.4, 1.2"}});
   check_following_zone<3>({});
 }
+
+
+namespace
+{
+  template <int dim>
+  double found_stretch(const std::string &zone, const double strain)
+  {
+    const Body<dim> body(breakable<dim>(zone, 0.3), ModelKind::coupled);
+    Vector          u = body.values(
+      [strain](const Point<dim> &p) { return strain * p[0] * Point<dim>::unit_vector(0); });
+    body.op().distribute(u, 0.);
+    return body.op().stretch_over_critical(u);
+  }
+
+
+  /** The critical stretch is 0.01. */
+  template <int dim>
+  void check_largest_stretch()
+  {
+    EXPECT_NEAR(found_stretch<dim>("everywhere", 0.004), 0.4, 1e-12);
+    // Where bonds are to appear cells count, once they are stretched too far.
+    EXPECT_EQ(found_stretch<dim>("follow", 0.004), 0.);
+    EXPECT_NEAR(found_stretch<dim>("follow", 0.012), 1.2, 1e-12);
+  }
+
+
+  /** A piece of the body that nothing holds, when the preconditioner is made. */
+  template <int dim>
+  void check_loose_piece(const double nu)
+  {
+    const Body<dim> body(
+      breakable<dim>("everywhere", nu) +
+        Settings{{"Boundary conditions/Displacement",
+                  dim == 2 ? "bottom: 0, 0; top: 0, 0.001" : "back: 0, 0, 0; front: 0, 0, 0.001"}},
+      ModelKind::coupled);
+    const auto is_loose = [](const Point<dim> &p) {
+      double farthest = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        farthest = std::max(farthest, std::abs(p[d] - 0.35));
+      return farthest < 0.11;
+    };
+    const Vector whole = at_rest(body);
+    body.elements->break_pairs(pairs_of(body,
+                                        [&](const auto &, const auto &a, const auto &b) {
+                                          return is_loose(a) != is_loose(b);
+                                        }),
+                               whole,
+                               0.);
+    const Vector u = at_rest(body);
+    Vector       residual(u);
+    body.op().residual(residual, u, 0.);
+    EXPECT_LT(residual.linfty_norm(), 1e-10);
+    EXPECT_LT(body.op().energy(u), body.op().energy(whole));
+  }
+} // namespace
+
+
+TEST(ZoneBreaking, knows_the_largest_stretch)
+{
+  check_largest_stretch<1>();
+  check_largest_stretch<2>();
+  check_largest_stretch<3>();
+}
+
+
+TEST(ZoneBreaking, solves_for_bodies_with_loose_pieces)
+{
+  for (const double nu : {0., 1. / 3., 0.45})
+    check_loose_piece<2>(nu);
+  check_loose_piece<3>(0.3);
+}
