@@ -222,7 +222,7 @@ namespace PeriDeal
             (knows ?
                "press on each other there. It is found as if they bore nothing, and is none of an open crack; K_II is that of faces that slide." :
              could ?
-               "pass through each other, since contact is off ('Contact = false' or 'Kinematics = full' in section 'Elasticity')." :
+               "pass through each other, since contact is off ('Contact = false' in section 'Elasticity', or 'Kinematics = full' there but in motion with 'Stepper = verlet')." :
                "pass through each other, since nothing is between them here. In 'peridynamics', and in 'coupled' with 'Scheme = exchange' where 'Mesh' in section 'Cracks' is not 'faces', they press on each other ('Contact' in section 'Elasticity')."));
           return;
         }

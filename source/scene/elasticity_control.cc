@@ -80,7 +80,8 @@ namespace PeriDeal
       "auto",
       "",
       "Faces of cracks press on each other, without friction, where they close: those of section `Cracks` and those that breaking bonds have left. `auto` does so wherever it can: in "
-      "peridynamics, and in `coupled` with `Scheme = exchange`, with `Kinematics = linear`. Finite elements alone do not know of it.",
+      "peridynamics, and in `coupled` with `Scheme = exchange`, with `Kinematics = linear`; and with `Kinematics = full` in peridynamics in motion with `Stepper = verlet`, "
+      "where not only faces of cracks but all nodes without a bond between them repel each other that come near, of fragments and of separate bodies. Finite elements alone do not know of it.",
       {"auto", "true", "false"});
     declare(
       "Solver",
@@ -167,8 +168,8 @@ namespace PeriDeal
       error("Reference temperature",
             "has no effect: 'Temperature change' is '" + text("Temperature change") +
               "'. Use 'Temperature change = computed', or leave the entry out.");
-    contact_is_asked     = choice_name("Contact") == "true";
-    contact              = choice_name("Contact") != "false" && !has_full_kinematics();
+    contact_is_asked = choice_name("Contact") == "true";
+    contact          = choice_name("Contact") != "false" && !(has_full_kinematics() && is_static());
     broken_bonds_conduct = number("Broken bonds conduct");
     if (!(broken_bonds_conduct >= 0. && broken_bonds_conduct <= 1.))
       error("Broken bonds conduct",
@@ -190,10 +191,11 @@ namespace PeriDeal
     breaks_in_motion = choice_name("Breaking") != "at rest";
     if (is_given("Breaking") && !is_static())
       error("Breaking", "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
-    if (contact_is_asked && has_full_kinematics())
+    if (contact_is_asked && has_full_kinematics() && is_static())
       error(
         "Contact",
-        "found 'true', which is for 'Kinematics = linear' only; 'Kinematics' is 'full'. Leave one of them out.");
+        "found 'true', which with 'Kinematics = full' is for 'Solver = dynamics' only; 'Solver' is '" +
+          solver_name() + "'. Leave one of them out.");
     if (has_full_kinematics() && solver == ElasticSolver::linear)
       error(
         "Kinematics",

@@ -202,6 +202,14 @@ namespace PeriDeal
     elasticity.parse(general.physics, dim);
     time.parse();
     take_times();
+    if (elasticity.has_full_kinematics() && time.stepper == "newmark")
+      {
+        elasticity.refuse(
+          elasticity.contact_is_asked,
+          "Contact",
+          "found 'true', which with 'Kinematics = full' is for 'Stepper = verlet' only; 'Stepper' in section 'Time' is 'newmark'. Leave one of them out.");
+        elasticity.contact = false;
+      }
     material.parse(general.physics,
                    dim,
                    elasticity.plane,

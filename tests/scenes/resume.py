@@ -45,7 +45,7 @@ SCENES = {
                ("coupling/adaptive_zone.prm", {"Domain/Cells": "24, 24"}, 0)],
     "motion": [("fracture/branching_crack.prm", {"Domain/Cells": "60, 24"}, 0), ("fracture/struck_pieces.prm", {}, 0),
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
-               ("fracture/branching_crack.prm", {"Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}, IMPLICIT),
+               ("fracture/colliding_bars.prm", {}, 0), ("fracture/branching_crack.prm", {"Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}, IMPLICIT),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
     "loading": [("fracture/following_zone.prm", {"Domain/Cells": "25, 37", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("fracture/centre_crack.prm", {"Domain/Cells": "30, 60", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {}, IMPLICIT),

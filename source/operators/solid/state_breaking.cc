@@ -145,6 +145,8 @@ namespace PeriDeal
       }
     const std::vector<unsigned int> list(rows.begin(), rows.end());
     solid.kinematics.find_forces_of(list, r.begin(), u.begin(), tau);
+    if (repulsion)
+      repulsion->add_forces(r, u, &list);
     for (const unsigned int i : list)
       for (unsigned int k = dim * i; k < dim * (i + 1); ++k)
         r.local_element(k) = scratch.local_element(k) - r.local_element(k);
@@ -196,6 +198,8 @@ namespace PeriDeal
       return 0;
     apply_change(*change, true);
     breakage.add_released(this->change_contact(change->nodes, u));
+    if (repulsion)
+      repulsion->bonds_lost(change->nodes, u);
     return this->n_broken_bonds() - before;
   }
 
@@ -258,6 +262,8 @@ namespace PeriDeal
   {
     if (!change.damage)
       breakage.apply_change(change, loaded);
+    if (repulsion && !change.damage)
+      repulsion->forget();
     follow_bonds(change.damage ? &change.nodes : nullptr);
   }
 
@@ -286,6 +292,8 @@ namespace PeriDeal
     });
     if (archive.loads() && this->brittle())
       follow_bonds();
+    if (archive.loads() && repulsion)
+      repulsion->forget();
   }
 
 

@@ -5,9 +5,11 @@
 
 #include <perideal/mesh/cell_corners.h>
 #include <perideal/operators/solid/bond_breaking.h>
+#include <perideal/operators/solid/short_range_contact.h>
 #include <perideal/operators/solid/solid_operator.h>
 #include <perideal/operators/solid/solid_tensors.h>
 
+#include <memory>
 #include <vector>
 
 namespace PeriDeal
@@ -28,7 +30,8 @@ namespace PeriDeal
    * dilatations first.
    *
    * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a
-   * rotation makes none (BondKinematics). q is that of the undeformed body.
+   * rotation makes none (BondKinematics). q is that of the undeformed body. In motion what has no
+   * bonds between it repels each other (ShortRangeContact).
    *
    * Viscosity (Le 2014 eq 2.43) is K without the dilatations. Bonds are those of SolidBonds; which
    * break, BondBreaking decides.
@@ -81,6 +84,7 @@ namespace PeriDeal
     }
 
     unsigned long long break_bonds(const Vector &u, double t, double share = 0.) override;
+    bool               update_contact(const Vector &u) override;
 
     double stretch_over_critical(const Vector &u) override
     {
@@ -130,6 +134,7 @@ namespace PeriDeal
     using SolidOperator<dim>::scratch;
 
     void find_conditions(const Nodes<dim> &nodes);
+    void make_repulsion();
     void find_thermal_strains();
     void find_thermal_loads();
 
@@ -168,6 +173,7 @@ namespace PeriDeal
     BondBreaking<dim>                         breakage;
     mutable typename BondBreaking<dim>::Count marks_of_surrogate{};
     mutable Vector                            tau; // tau_i = c_i theta_i/q_i; 0 without dilatations
-    mutable std::vector<CellCorner<dim>>      corners; // once they have been asked for
+    mutable std::vector<CellCorner<dim>>      corners;   // once they have been asked for
+    std::unique_ptr<ShortRangeContact<dim>>   repulsion; // or none
   };
 } // namespace PeriDeal

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/mesh/nodes.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Contact of bodies and fragments wherever they go: nodes without a bond between them repel each
+   * other in the deformed body, as in Silling and Askari (2005), Comput. Struct. 83. With r their
+   * distance there, xi that in the undeformed body and h the spacing,
+   *
+   *   energy k (d - r)^2/2 where r < d,   d = min(0.9 |xi|, 1.35 h),
+   *
+   * k the smaller one of both nodes' stiffnesses, h the mean of both. Forces are central: momentum
+   * and angular momentum are kept.
+   *
+   * Asked are nodes at the body's boundary and those that have lost a bond. Of two nodes that have
+   * all of their bonds no pair is taken that have a neighbour in common, in the undeformed body: a
+   * convex body that is whole feels nothing until it is pressed to 0.4 of its size (horizon 2 h).
+   *
+   * Pairs up to a skin beyond d are found anew when some node has moved by half of that. Forces are
+   * sums over those nearer than d in the order of places, and do not depend on when that was: the
+   * same digits on any number of processes, and for a body that is loaded.
+   */
+  template <int dim>
+  class ShortRangeContact
+  {
+  public:
+    /**
+     * The neighbours, by local number, to which an owned node has bonds now; returns whether these
+     * are all of its family.
+     */
+    using BondsOf = std::function<bool(const unsigned int, std::vector<unsigned int> &)>;
+
+    /**
+     * @param nodes       with their halo; they have to outlive this object
+     * @param horizon     no family reaches farther
+     * @param stiffnesses of the owned nodes. Collective.
+     */
+    ShortRangeContact(const Nodes<dim>          &nodes,
+                      const double               horizon,
+                      const BondsOf             &bonds_of,
+                      const std::vector<double> &stiffnesses);
+
+    /**
+     * To be called before anything else is asked for at u. Returns the energy that nodes have got
+     * which have come to be asked between others, by bonds that they have lost. Collective.
+     */
+    double update(const Vector &u);
+
+    /** These owned nodes have lost bonds, stretched ones, at u. To be called by all processes. */
+    void bonds_lost(const std::vector<unsigned int> &of_nodes, const Vector &u);
+
+    /** Some nodes of some process were nearer than d at the last add_forces() before update(). */
+    bool touches() const
+    {
+      return touch;
+    }
+
+    /** Bonds are others, whatever has happened to them. */
+    void forget()
+    {
+      is_found = false;
+    }
+
+    /** y -= F at u, of all owned nodes or of some. Collective. */
+    void add_forces(Vector                          &y,
+                    const Vector                    &u,
+                    const std::vector<unsigned int> *of_nodes = nullptr) const;
+
+    /** Collective. */
+    double energy(const Vector &u) const;
+
+    /** Make add_tangent() that at u. Collective. */
+    void linearize(const Vector &u);
+
+    /** y += K x. Collective. */
+    void add_tangent(Vector &y, const Vector &x) const;
+
+    /** At least the sum of the norms of the blocks that an owned node has of K. */
+    double row_bound(const unsigned int node) const;
+
+    std::size_t memory_consumption() const;
+
+  private:
+    /** What a node is known by to all processes; see flattened(). */
+    struct Place
+    {
+      dealii::types::global_dof_index number;
+      double                          spacing, stiffness;
+      bool                            is_whole; // it has all bonds of its family
+      dealii::Point<dim>              undeformed, now;
+    };
+
+    struct Partner
+    {
+      unsigned int           node; // in the layout of places
+      double                 stiffness, distance;
+      dealii::Tensor<1, dim> direction;   // of the tangent; zero: they do not touch
+      double                 across = 0.; // of the tangent: force/r
+    };
+
+    struct Row
+    {
+      unsigned int         node;
+      std::vector<Partner> partners;
+    };
+
+    void                                   find_asked();
+    void                                   search(const Vector &u);
+    std::vector<Place>                     gathered(const Vector &u) const;
+    std::vector<std::vector<unsigned int>> pairs(const std::vector<Place> &places,
+                                                 const std::size_t         first) const;
+    bool                                   may_touch(const Place                     &a,
+                                                     const Place                     &b,
+                                                     const std::vector<unsigned int> &bonds_of_a) const;
+    double                                 distance_of(const Place &a, const Place &b) const;
+    void                                   show(const Vector &values, const bool deformed) const;
+    double                 farthest_move(const Vector &u, const std::vector<double> &since) const;
+    std::vector<double>    values_of_asked(const Vector &u) const;
+    dealii::Tensor<1, dim> difference(const unsigned int a, const unsigned int b) const;
+
+    const Nodes<dim>         &nodes;
+    const double              horizon;
+    const BondsOf             bonds_of;
+    const std::vector<double> stiffnesses;
+    std::vector<double>       spacings; // of owned nodes
+    std::vector<bool>         is_asked, is_whole;
+    std::vector<unsigned int> asked;              // owned nodes
+    std::vector<double>       at_search, at_loss; // u of these; the latter empty: none since
+    std::vector<Row>          rows;               // in the order of nodes
+    bool                      is_found = false, any_pairs = false, touch = false;
+    mutable bool              touch_here = false;      // of the owned nodes, at last
+    double                    skin       = 0., finest; // smallest spacing of all
+    mutable Vector            places; // of the nodes that touch, and their partners
+  };
+} // namespace PeriDeal

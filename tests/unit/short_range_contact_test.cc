@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Bodies and fragments that repel each other, with full kinematics.
+
+#include <perideal/solvers/motion_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastic_test_tools.h"
+
+namespace PeriDeal
+{
+  using namespace OperatorTests;
+  using dealii::Point;
+  using dealii::Tensor;
+
+  namespace
+  {
+    constexpr double h = 0.0625, gap = 4. * h; // farther than a family reaches
+
+    const Settings moving{{"Elasticity/Solver", "dynamics"},
+                          {"Elasticity/Kinematics", "full"},
+                          {"Boundary conditions/Displacement", ""},
+                          {"Material/Density", "1"}};
+
+
+    /** Two boxes side by side, free, with a gap from 0.5 - gap to 0.5 between them. */
+    template <int dim>
+    Settings two_boxes()
+    {
+      return box<dim>() + moving +
+             Settings{{"Domain/Holes", "rectangle: 0.25, -1, 0.5, 2"},
+                      {"Domain/Lower corner", zeros[dim]},
+                      {"Domain/Upper corner", dim == 2 ? "0.75, 0.25" : "0.75, 0.25, 0.1875"},
+                      {"Domain/Cells", dim == 2 ? "12, 4" : "12, 4, 3"}};
+    }
+
+
+    /** The right box moves by so much to the left; both are deformed a little. */
+    template <int dim>
+    Vector moved(const Body<dim> &body, const double by)
+    {
+      return body.values([&](const Point<dim> &p) {
+        Tensor<1, dim> value = 0.05 * h * bumpy_vector<dim>(p);
+        value[0] -= p[0] > 0.4 ? by : 0.;
+        return value;
+      });
+    }
+
+
+    template <int dim>
+    Vector forces_at(const Body<dim> &body, const Vector &u)
+    {
+      Vector r(u);
+      body.op().update_contact(u);
+      body.op().unbalanced(r, u, 0.);
+      return r;
+    }
+
+
+    template <int dim>
+    double sum_on_left(const Body<dim> &body, const Vector &r)
+    {
+      double sum = 0.;
+      for (unsigned int i = 0; i < r.locally_owned_size() / dim; ++i)
+        if (body.position(i)[0] < 0.4)
+          sum += r.local_element(dim * i);
+      return dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD);
+    }
+
+
+    /** The sum of the forces and of their moments, over the sum of their sizes. */
+    template <int dim>
+    double imbalance(const Body<dim> &body, const Vector &u, const Vector &r)
+    {
+      std::vector<double> sums(dim + dim * dim + 1);
+      for (unsigned int i = 0; i < r.locally_owned_size() / dim; ++i)
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double force = r.local_element(dim * i + d);
+            sums[d] += force;
+            sums.back() += std::abs(force);
+            for (unsigned int e = 0; e < dim; ++e)
+              {
+                const double arm = body.position(i)[e] + u.local_element(dim * i + e);
+                sums[dim + dim * d + e] += arm * force;
+                sums[dim + dim * e + d] -= arm * force;
+              }
+          }
+      dealii::Utilities::MPI::sum(sums, MPI_COMM_WORLD, sums);
+      double most = 0.;
+      for (unsigned int k = 0; k + 1 < sums.size(); ++k)
+        most = std::max(most, std::abs(sums[k]));
+      return most / sums.back();
+    }
+
+
+    template <int dim>
+    void check_forces()
+    {
+      const Body<dim>  body(two_boxes<dim>(), ModelKind::peridynamics);
+      ElasticOperator &op = body.op();
+      // Out of reach of each other, near, and out of reach again.
+      EXPECT_LT(std::abs(sum_on_left(body, forces_at(body, moved(body, gap - 1.5 * h)))), 1e-14);
+      const Vector u = moved(body, gap - 1.1 * h), r = forces_at(body, u);
+      EXPECT_LT(sum_on_left(body, r), -1e-3); // pushed to the left
+      EXPECT_LT(imbalance(body, u, r), 1e-13);
+
+      // The forces are the energy's derivative, the tangent is theirs.
+      constexpr double step = 1e-7;
+      const Vector     w    = body.values(bumpy_vector<dim>);
+      Vector           up = u, down = u, s(u), y(u);
+      up.add(step, w);
+      down.add(-step, w);
+      const double slope = (op.energy(up) - op.energy(down)) / (2. * step);
+      EXPECT_NEAR(slope, -(r * w), 1e-7 * std::abs(slope));
+      op.linearize(u);
+      op.multiply(y, w);
+      Vector change(u);
+      op.unbalanced(change, up, 0.);
+      op.unbalanced(s, down, 0.);
+      change -= s;
+      change *= 1. / (2. * step);
+      change += y;
+      EXPECT_LT(change.linfty_norm(), 1e-6 * y.linfty_norm());
+      const DenseProperties dense(op);
+      EXPECT_LT(dense.asymmetry, 1e-13);
+      const Spectrum spectrum = op.spectrum();
+      EXPECT_LE(dense.largest, spectrum.safe * (1. + 1e-12));
+      EXPECT_LE(dense.largest, spectrum.sharp * 1.02);
+    }
+  } // namespace
+
+
+  TEST(ShortRangeContact, forces)
+  {
+    check_forces<2>();
+    check_forces<3>();
+  }
+
+
+  /** Pressed faces are no stiffer than the inside of the body. */
+  TEST(ShortRangeContact, hardly_changes_the_stable_step)
+  {
+    for (const char *exponent : {"0", "1"})
+      {
+        const Body<2> body(two_boxes<2>() + Settings{{"Peridynamics/Kernel exponent", exponent}},
+                           ModelKind::peridynamics);
+        const double  apart = stable_motion_step(body.op());
+        for (const double left : {1.3, 1.1, 0.9})
+          {
+            const Vector u = body.values([&](const Point<2> &p) {
+              return Tensor<1, 2>({p[0] > 0.4 ? left * h - gap : 0., 0.});
+            });
+            body.op().update_contact(u);
+            body.op().linearize(u);
+            EXPECT_GT(stable_motion_step(body.op()), 0.95 * apart) << left;
+          }
+      }
+  }
+
+
+  /** What is found does not depend on what has been found before, nor on who has which node. */
+  TEST(ShortRangeContact, depends_on_places_alone)
+  {
+    const Body<2> body(two_boxes<2>(), ModelKind::peridynamics),
+      fresh(two_boxes<2>(), ModelKind::peridynamics),
+      alone(two_boxes<2>(), ModelKind::peridynamics, MPI_COMM_SELF);
+    for (double by = 0.; by < gap - 1.1 * h; by += 0.1 * h)
+      forces_at(body, moved(body, by));
+    forces_at(body, moved(body, gap - 1.0 * h));
+    const double last = gap - 1.1 * h;
+    const Vector r = forces_at(body, moved(body, last)), s = forces_at(fresh, moved(fresh, last)),
+                 all        = forces_at(alone, moved(alone, last));
+    unsigned int n_compared = 0;
+    for (unsigned int k = 0; k < r.locally_owned_size(); ++k)
+      EXPECT_EQ(r.local_element(k), s.local_element(k));
+    for (unsigned int k = 0; k < r.locally_owned_size(); ++k)
+      for (unsigned int j = 0; j < all.locally_owned_size() / 2; ++j)
+        if (body.position(k / 2).distance(alone.position(j)) < 1e-9)
+          {
+            EXPECT_NEAR(r.local_element(k),
+                        all.local_element(2 * j + k % 2),
+                        1e-13 * all.linfty_norm());
+            ++n_compared;
+          }
+    EXPECT_EQ(n_compared, r.locally_owned_size());
+  }
+
+
+  /** A whole convex body feels nothing of it, unless it is pressed very much. */
+  TEST(ShortRangeContact, is_none_of_a_whole_body)
+  {
+    // Of pairs without a common neighbour the nearest are sqrt(5), sqrt(13), and 5 spacings apart.
+    for (const auto &[ratio, left] : {std::make_pair("1.1", 0.65), {"2", 0.4}, {"3", 0.3}})
+      {
+        const Settings settings =
+          box<2>() + moving + Settings{{"Peridynamics/Horizon ratio", ratio}};
+        const Body<2> body(settings, ModelKind::peridynamics),
+          without(settings + Settings{{"Elasticity/Contact", "false"}}, ModelKind::peridynamics);
+        const auto deformation = [&](const Point<2> &p) {
+          return Tensor<1, 2>({(left - 1.) * p[0], (left - 1.) * p[1]});
+        };
+        const Vector u = body.values(deformation);
+        Vector       r = forces_at(body, u);
+        EXPECT_GT(r.linfty_norm(), 0.);
+        r -= forces_at(without, without.values(deformation));
+        EXPECT_EQ(r.linfty_norm(), 0.) << ratio;
+      }
+  }
+
+
+  /** The ends of bonds that have broken, pressed together. */
+  TEST(ShortRangeContact, follows_bonds_that_break)
+  {
+    const Settings brittle = box<2>() + moving + Settings{{"Material/Critical stretch", "0.3"}};
+    const Body<2>  body(brittle, ModelKind::peridynamics);
+    const auto     parted = [&](const double by) {
+      return body.values([&](const Point<2> &p) {
+        return Tensor<1, 2>({p[0] > 0.53 ? by : 0., 0.});
+      });
+    };
+    ElasticOperator &op = body.op();
+    forces_at(body, parted(0.));
+    EXPECT_GT(op.break_bonds(parted(10. * h), 0.), 50u);
+    EXPECT_LT(forces_at(body, parted(10. * h)).linfty_norm(), 1e-14); // found late, a long way off
+    EXPECT_LT(forces_at(body, parted(0.)).linfty_norm(), 1e-14);
+    EXPECT_LT(sum_on_left(body, forces_at(body, parted(-0.05 * h))), 1e-12);
+    const Vector pressed = parted(-0.5 * h), r = forces_at(body, pressed);
+    double       sum = 0.;
+    for (unsigned int i = 0; i < r.locally_owned_size() / 2; ++i)
+      sum += body.position(i)[0] < 0.53 ? r.local_element(2 * i) : 0.;
+    EXPECT_LT(dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD), -1e-3);
+    EXPECT_GT(op.energy(pressed), 0.);
+  }
+
+
+  namespace
+  {
+    struct Impact
+    {
+      double drift, left, right; // of the energy over itself; momenta over that of the start
+    };
+
+
+    /** The right box flies to the left, and strikes the other one. */
+    Impact impact(const double share_of_step)
+    {
+      const Body<2>  body(two_boxes<2>(), ModelKind::peridynamics);
+      const double   speed = 0.05;
+      Vector         u     = body.values([&](const Point<2> &p) {
+        return Tensor<1, 2>({p[0] > 0.4 ? 1.5 * h - gap : 0., 0.});
+      });
+      Vector         v     = body.values([&](const Point<2> &p) {
+        return Tensor<1, 2>({p[0] > 0.4 ? -speed : 0., 0.});
+      });
+      StepperOptions options;
+      options.time_step    = share_of_step * stable_motion_step(body.op());
+      const auto   stepper = make_motion_stepper("verlet", body.op(), options);
+      Impact       result{0., 0., 0.};
+      const double start = body.op().lumped_capacity() * v;
+      for (unsigned int k = 0; k < 40; ++k)
+        {
+          stepper->advance(u, v, 0.05 * k, 0.05 * (k + 1));
+          const MotionEnergy energy = stepper->energy(u, v);
+          result.drift = std::max(result.drift, std::abs(energy.imbalance()) / energy.exchanged);
+        }
+      Vector momenta = v;
+      momenta.scale(body.op().lumped_capacity());
+      result.left  = sum_on_left(body, momenta) / start;
+      Vector ones  = body.values([](const Point<2> &) { return Tensor<1, 2>({1., 0.}); });
+      result.right = momenta * ones / start - result.left;
+      return result;
+    }
+  } // namespace
+
+
+  TEST(ShortRangeContact, keeps_momentum_and_energy)
+  {
+    const Impact coarse = impact(0.4), fine = impact(0.2);
+    for (const Impact &found : {coarse, fine})
+      {
+        EXPECT_NEAR(found.left + found.right, 1., 1e-12);
+        EXPECT_NEAR(found.left, 1., 0.1); // what vibrates takes some of the energy
+      }
+    EXPECT_LT(coarse.drift, 5e-3);
+    EXPECT_NEAR(std::log2(coarse.drift / fine.drift), 2., 0.5);
+  }
+} // namespace PeriDeal
