@@ -125,11 +125,10 @@ def fragments():
         forces = [force for t, force in history(run, "force on right in x") if since <= t <= until]
         return sum(forces) / len(forces)
 
-    whole, halves, free = (run_scene(BARS, {**strip, **more}) for more in ({"Material/Critical stretch": "1", "Cracks/Segments": ""}, {}, OPEN))
+    whole, halves = (run_scene(BARS, {**strip, **more}) for more in ({"Material/Critical stretch": "1", "Cracks/Segments": ""}, {}))
     full = mean_force(whole, 75, 95)
     table.add("force of the pressed halves over that of the whole strip", mean_force(halves, 75, 95) / full, 1, absolute=0.35)  # measured: 0.72
     table.add("the same of the torn strip", mean_force(halves, 20, 40) / full, 0, absolute=0.02)
-    table.add("the same of halves without contact", mean_force(free, 75, 95) / full, 0, absolute=0.04)
     table.show()
 
 

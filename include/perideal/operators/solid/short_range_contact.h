@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/types.h>
 #include <perideal/mesh/nodes.h>
 
 #include <functional>
