@@ -10,6 +10,7 @@ from style import name, plain
 
 
 AT_MOST = 4  # ends of cracks
+MODES = ("I", "II", "III")
 
 
 def what_ran(run, words):
@@ -61,15 +62,15 @@ def what_flies(run, index, words):
 
 
 def intensities(run, words):
-    """K_I, and K_II where it is more than an error of the method, at the ends of cracks; a few at most."""
+    """K_I, and K_II and K_III where they are more than an error of the method, at the ends or fronts of cracks; a few at most."""
     of_models = {m: run.summary["models"][m].get("stress intensity") or {} for m in run.models}
     ends = list(dict.fromkeys(e for found in of_models.values() for e in found))
     lines = []
     for end in ends[:AT_MOST]:
-        for mode in ("I", "II"):
-            values = {m: found[end] for m, found in of_models.items() if end in found}
+        for mode in MODES:
+            values = {m: found[end] for m, found in of_models.items() if mode in found.get(end, {})}
             listed = [f"{plain(v[mode], 4)} ({m})" for m, v in values.items()
-                      if mode == "I" or abs(v["II"]) > 0.01 * abs(v["I"])]
+                      if mode == "I" or abs(v[mode]) > 0.01 * max(abs(v[other]) for other in MODES if other in v)]
             if listed:
                 unit = f" in {words.units.intensity}" if words.units.intensity else ""
                 lines.append(f"The stress intensity factor K_{mode} at {end}{unit} is "
@@ -78,7 +79,7 @@ def intensities(run, words):
     if missing:
         lines.append(("About stress intensity factors: " if ends else "There are no stress intensity factors: ") + f"{missing}.")
     if len(ends) > AT_MOST:
-        lines.append(f"Those at {len(ends) - AT_MOST} more ends are in totals.csv.")
+        lines.append(f"Those at {len(ends) - AT_MOST} more ends or places are in totals.csv.")
     return lines
 
 

@@ -13,69 +13,89 @@ namespace PeriDeal
 
   namespace
   {
-    RingPoint point_beside(const FamilyFit<2> &fit,
-                           const Point<2>     &node,
-                           const Tensor<1, 2> &away,
-                           const bool          warm)
+    template <int dim>
+    RingPoint<dim> point_beside(const FamilyFit<dim> &fit,
+                                const Point<dim>     &node,
+                                const Tensor<1, dim> &away,
+                                const bool            warm)
     {
-      RingPoint point;
+      RingPoint<dim> point;
       point.place = node + away;
-      for (unsigned int d = 0; d < 2; ++d)
+      for (unsigned int d = 0; d < dim; ++d)
         point.gradient[d] = fit.slope(d, away);
       if (warm)
         {
-          point.thermal_strain = fit.value(2, away);
-          point.thermal_slope  = fit.slope(2, away);
+          point.thermal_strain = fit.value(dim, away);
+          point.thermal_slope  = fit.slope(dim, away);
         }
       return point;
     }
   } // namespace
 
 
-  std::vector<StressIntensity> bond_intensities(const Scene<2>             &scene,
-                                                const Families<2>          &families,
-                                                const FamilyFit<2>::Values &values,
-                                                const bool                  warm,
-                                                const double                t,
-                                                const double                crack_time)
+  template <int dim>
+  std::vector<StressIntensity> bond_intensities(const Scene<dim>                      &scene,
+                                                const Families<dim>                   &families,
+                                                const typename FamilyFit<dim>::Values &values,
+                                                const bool                             warm,
+                                                const double                           t,
+                                                const double                           crack_time)
   {
-    std::vector<StressIntensity>  list;
-    std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, crack_time, scene.horizon());
+    std::vector<StressIntensity> list;
+    auto                         ends = crack_end_integrals(scene, crack_time, scene.horizon());
     if (ends.empty())
       return list;
-    const Nodes<2>    &nodes = families.nodes();
-    const Tensor<1, 2> edges = scene.domain.spacing();
-    const QGauss<2>    rule(3);
-    const auto        &given = scene.initial_and_source.body_force;
-    FamilyFit<2>       fit(families);
+    const Nodes<dim>    &nodes = families.nodes();
+    const Tensor<1, dim> edges = scene.domain.spacing();
+    const QGauss<dim>    rule(dim == 2 ? 3 : 2);
+    double               volume = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      volume *= edges[d];
+    const auto    &given = scene.initial_and_source.body_force;
+    FamilyFit<dim> fit(families);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const Point<2> &p = nodes.position(i);
-        if (std::none_of(ends.begin(), ends.end(), [&](const CrackEndIntegral &end) {
+        const Point<dim> &p = nodes.position(i);
+        if (std::none_of(ends.begin(), ends.end(), [&](const auto &end) {
               return end.reaches(p, 0.5 * edges.norm());
             }))
           continue;
-        const Point<2> side = nodes.crack_point(i);
-        fit.fit(i, warm ? 3 : 2, values);
+        const Point<dim> side = nodes.crack_point(i);
+        fit.fit(i, warm ? dim + 1 : dim, values);
         for (unsigned int q = 0; q < rule.size(); ++q)
           {
-            Tensor<1, 2> away;
-            for (unsigned int d = 0; d < 2; ++d)
+            Tensor<1, dim> away;
+            for (unsigned int d = 0; d < dim; ++d)
               away[d] = (rule.point(q)[d] - 0.5) * edges[d];
-            RingPoint point = point_beside(fit, p, away, warm);
+            RingPoint<dim> point = point_beside(fit, p, away, warm);
             // Of two nodes on faces of a crack each has its own side.
             if (p.distance(side) > 0. && families.cracks().separate(side, point.place))
               continue;
-            point.node   = side;
-            point.weight = rule.weight(q) * edges[0] * edges[1];
-            for (unsigned int d = 0; d < 2 && !given.empty(); ++d)
+            point.node = side;
+            // Only where a front goes from side to side rings come to these.
+            if (dim == 3 && !scene.domain.contains(point.place))
+              continue;
+            point.weight = rule.weight(q) * volume;
+            for (unsigned int d = 0; d < dim && !given.empty(); ++d)
               point.force[d] = given[d].value(point.place, t);
-            for (CrackEndIntegral &end : ends)
+            for (auto &end : ends)
               end.add(point);
           }
       }
-    for (CrackEndIntegral &end : ends)
+    for (auto &end : ends)
       list.push_back(end.result(nodes.communicator()));
     return list;
   }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template std::vector<StressIntensity> bond_intensities(const Scene<dim> &,                      \
+                                                         const Families<dim> &,                   \
+                                                         const typename FamilyFit<dim>::Values &, \
+                                                         const bool,                              \
+                                                         const double,                            \
+                                                         const double);
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

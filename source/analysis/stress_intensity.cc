@@ -5,12 +5,12 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/analysis/stress_intensity.h>
+#include <perideal/analysis/tip_field.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/scene/zone.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace PeriDeal
 {
@@ -19,76 +19,6 @@ namespace PeriDeal
   namespace
   {
     const double pi = std::acos(-1.);
-
-
-    /**
-     * Stresses of the near-tip field of unit intensity (Westergaard, Irwin), in the frame of the
-     * crack.
-     */
-    SymmetricTensor<2, 2> near_stress(const unsigned int mode, const double r, const double angle)
-    {
-      const double          s = std::sin(0.5 * angle), c = std::cos(0.5 * angle);
-      const double          s3 = std::sin(1.5 * angle), c3 = std::cos(1.5 * angle);
-      SymmetricTensor<2, 2> stress;
-      if (mode == 0)
-        {
-          stress[0][0] = c * (1. - s * s3);
-          stress[1][1] = c * (1. + s * s3);
-          stress[0][1] = c * s * c3;
-        }
-      else
-        {
-          stress[0][0] = -s * (2. + c * c3);
-          stress[1][1] = s * c * c3;
-          stress[0][1] = c * (1. - s * s3);
-        }
-      return stress / std::sqrt(2. * pi * r);
-    }
-
-
-    /** 1 at 0 and before, 0 at 1 and behind, without jumps of two derivatives. */
-    double smooth_step(const double s)
-    {
-      const double x = std::clamp(s, 0., 1.);
-      return 1. - x * x * x * (10. - 15. * x + 6. * x * x);
-    }
-  } // namespace
-
-
-  namespace
-  {
-    /**
-     * From a point to the nearest region or point that is held or loaded; regions are looked at in
-     * the centres and corners of cells.
-     */
-    double distance_to_parts(const Scene<2> &scene, const Point<2> &p)
-    {
-      const auto &conditions = scene.boundary_conditions;
-      double      nearest    = std::numeric_limits<double>::max();
-      for (const Part &part : conditions.parts)
-        {
-          const bool used = find_condition(conditions.displacement, part.id) != nullptr ||
-                            find_condition(conditions.traction, part.id) != nullptr;
-          if (!used || part.kind == Part::of_side)
-            continue;
-          if (part.kind == Part::point)
-            {
-              nearest = std::min(nearest, p.distance(part.position<2>()));
-              continue;
-            }
-          const Domain<2>   &domain = scene.domain;
-          const Tensor<1, 2> h      = domain.spacing();
-          for (unsigned int j = 0; j <= 2 * domain.cells[1]; ++j)
-            for (unsigned int i = 0; i <= 2 * domain.cells[0]; ++i)
-              {
-                const Point<2> place(domain.lower[0] + 0.5 * i * h[0],
-                                     domain.lower[1] + 0.5 * j * h[1]);
-                if (p.distance(place) < nearest && part.holds(place))
-                  nearest = p.distance(place);
-              }
-        }
-      return nearest;
-    }
   } // namespace
 
 
@@ -121,32 +51,6 @@ namespace PeriDeal
   }
 
 
-  Tensor<1, 2> CrackEndIntegral::near_slope(const unsigned int mode,
-                                            const double       r,
-                                            const double       angle) const
-  {
-    const double s = std::sin(0.5 * angle), c = std::cos(0.5 * angle);
-    // u = sqrt(r/(2 pi))/(2 mu) f(angle); f and its derivative.
-    Tensor<1, 2> f, df;
-    if (mode == 0)
-      {
-        f[0]  = c * (kappa - 1. + 2. * s * s);
-        f[1]  = s * (kappa + 1. - 2. * c * c);
-        df[0] = -0.5 * s * (kappa - 1. + 2. * s * s) + 2. * c * s * c;
-        df[1] = 0.5 * c * (kappa + 1. - 2. * c * c) + 2. * s * c * s;
-      }
-    else
-      {
-        f[0]  = s * (kappa + 1. + 2. * c * c);
-        f[1]  = -c * (kappa - 1. - 2. * s * s);
-        df[0] = 0.5 * c * (kappa + 1. + 2. * c * c) - 2. * s * c * s;
-        df[1] = 0.5 * s * (kappa - 1. - 2. * s * s) + 2. * c * s * c;
-      }
-    return (0.5 * std::cos(angle) * f - std::sin(angle) * df) /
-           (2. * shear * std::sqrt(2. * pi * r));
-  }
-
-
   double CrackEndIntegral::weight_at(const double r) const
   {
     return smooth_step((r - inner) / (outer - inner));
@@ -165,7 +69,7 @@ namespace PeriDeal
   }
 
 
-  Tensor<1, 2> CrackEndIntegral::from_end(const RingPoint &point, double &angle) const
+  Tensor<1, 2> CrackEndIntegral::from_end(const RingPoint<2> &point, double &angle) const
   {
     Tensor<1, 2> x = frame * (point.place - end);
     angle          = std::atan2(x[1], x[0]);
@@ -184,13 +88,13 @@ namespace PeriDeal
   }
 
 
-  void CrackEndIntegral::add(const RingPoint &point)
+  void CrackEndIntegral::add(const RingPoint<2> &point)
   {
     add(point, true);
   }
 
 
-  void CrackEndIntegral::add_strip(const RingPoint    &point,
+  void CrackEndIntegral::add_strip(const RingPoint<2> &point,
                                    const Tensor<1, 2> &normal,
                                    const bool          for_j)
   {
@@ -198,7 +102,7 @@ namespace PeriDeal
     if (x[0] >= 0.)
       return;
     const Tensor<1, 2> to_crack = -x[1] * frame[1];
-    RingPoint          strip    = point;
+    RingPoint<2>       strip    = point;
     strip.weight *= normal * to_crack;
     strip.node = point.place;
     strip.place += 0.5 * to_crack;
@@ -221,7 +125,7 @@ namespace PeriDeal
   }
 
 
-  void CrackEndIntegral::add(const RingPoint &point, const bool for_j)
+  void CrackEndIntegral::add(const RingPoint<2> &point, const bool for_j)
   {
     double             angle;
     const Tensor<1, 2> x = from_end(point, angle);
@@ -250,8 +154,8 @@ namespace PeriDeal
         if (for_j)
           sums[0] += part * (trace(sigma) * warms - b * ahead(u));
         for (unsigned int mode = 0; mode < 2; ++mode)
-          sums[1 + mode] +=
-            part * (trace(near_stress(mode, r, angle)) * warms - b * near_slope(mode, r, angle));
+          sums[1 + mode] += part * (trace(near_stress(mode, r, angle)) * warms -
+                                    b * near_slope(mode, r, angle, kappa, shear));
       }
     if (r <= inner)
       return;
@@ -263,7 +167,7 @@ namespace PeriDeal
       {
         const SymmetricTensor<2, 2> other = near_stress(mode, r, angle);
         sums[1 + mode] +=
-          point.weight * (near_slope(mode, r, angle) * (sigma * slope) +
+          point.weight * (near_slope(mode, r, angle, kappa, shear) * (sigma * slope) +
                           ahead(u) * (other * slope) - (other * elastic) * slope[0]);
       }
   }

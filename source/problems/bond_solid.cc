@@ -194,11 +194,11 @@ namespace PeriDeal
       std::vector<StressIntensity> stress_intensities(const double time) const override
       {
         std::vector<StressIntensity> list;
-        if constexpr (dim == 2)
+        if constexpr (dim > 1)
           {
             const ThermalStrains &thermal = states->bonds().thermal;
             this->displacement.update_ghost_values();
-            list = bond_intensities(
+            list = bond_intensities<dim>(
               scene,
               states->bonds().families,
               [&](const unsigned int i, const unsigned int k) {

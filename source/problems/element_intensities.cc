@@ -21,35 +21,41 @@ namespace PeriDeal
      * Gauss points along an edge in rings about ends of cracks, above the degree of elements: the
      * weights and near fields are no polynomials, and cells may be a third of a ring.
      */
-    constexpr unsigned int more_points_in_rings = 5;
+    constexpr unsigned int more_points_in_rings(const unsigned int dim)
+    {
+      return dim == 2 ? 5 : 2;
+    }
 
 
+    template <int dim>
     bool is_warm(const ElasticityControl &elasticity)
     {
       return elasticity.computes_temperature || !elasticity.temperature_change.is_constant() ||
-             elasticity.temperature_change.value(Point<2>()) != 0.;
+             elasticity.temperature_change.value(Point<dim>()) != 0.;
     }
 
 
     /** Within the plane. @param change of the temperature, if it is computed */
-    double strain_of_heat(const Scene<2>               &scene,
-                          const Point<2>               &p,
+    template <int dim>
+    double strain_of_heat(const Scene<dim>             &scene,
+                          const Point<dim>             &p,
                           const Vector                 &change,
                           const types::global_dof_index node)
     {
-      return thermal_strain_factor(scene.material.moduli(p), 2, scene.elasticity.plane) *
+      return thermal_strain_factor(scene.material.moduli(p), dim, scene.elasticity.plane) *
              scene.material.thermal_expansion.value(p) *
              (change.size() > 0 ? change(node) : scene.elasticity.temperature_change.value(p));
     }
 
 
     /** What an element knows of one of its points; FEValues has been through reinit(). */
+    template <int dim>
     class CellPoints
     {
     public:
-      CellPoints(const FEValuesBase<2>                      &values,
+      CellPoints(const FEValuesBase<dim>                    &values,
                  const std::vector<types::global_dof_index> &nodes,
-                 const Scene<2>                             &scene,
+                 const Scene<dim>                           &scene,
                  const Vector                               &change,
                  const bool                                  warm)
         : values(values)
@@ -58,7 +64,7 @@ namespace PeriDeal
         const auto &cell = values.get_cell();
         for (unsigned int k = 0; k < nodes.size() && warm; ++k)
           {
-            const Point<2> node = values.get_mapping().transform_unit_to_real_cell(
+            const Point<dim> node = values.get_mapping().transform_unit_to_real_cell(
               cell,
               values.get_fe().unit_support_point(k));
             // On the cell's own side of cracks, with its own material.
@@ -67,14 +73,14 @@ namespace PeriDeal
           }
       }
 
-      RingPoint at(const unsigned int q, const Vector &u) const
+      RingPoint<dim> at(const unsigned int q, const Vector &u) const
       {
-        RingPoint point;
+        RingPoint<dim> point;
         point.place  = values.quadrature_point(q);
         point.weight = values.JxW(q);
         for (unsigned int k = 0; k < nodes.size(); ++k)
-          for (unsigned int d = 0; d < 2; ++d)
-            point.gradient[d] += u(2 * nodes[k] + d) * values.shape_grad(k, q);
+          for (unsigned int d = 0; d < dim; ++d)
+            point.gradient[d] += u(dim * nodes[k] + d) * values.shape_grad(k, q);
         for (unsigned int k = 0; k < strains.size(); ++k)
           {
             point.thermal_strain += strains[k] * values.shape_value(k, q);
@@ -84,7 +90,7 @@ namespace PeriDeal
       }
 
     private:
-      const FEValuesBase<2>                      &values;
+      const FEValuesBase<dim>                    &values;
       const std::vector<types::global_dof_index> &nodes;
       std::vector<double>                         strains; // of heat, at the nodes
     };
@@ -100,40 +106,42 @@ namespace PeriDeal
 
 
     /** Gives the ends of cracks what cells know. */
+    template <int dim>
     class RingCells
     {
     public:
-      using Cell = DoFHandler<2>::active_cell_iterator;
+      using Cell = typename DoFHandler<dim>::active_cell_iterator;
 
       /**
        * @param bonds there are some along cracks
        * @param t     of body forces
        */
-      RingCells(const Scene<2>           &scene,
-                const ElasticElements<2> &elements,
-                const DoFHandler<2>      &dofs,
-                const Vector             &u,
-                const bool                bonds,
-                const double              t)
+      RingCells(const Scene<dim>           &scene,
+                const ElasticElements<dim> &elements,
+                const DoFHandler<dim>      &dofs,
+                const Vector               &u,
+                const bool                  bonds,
+                const double                t)
         : scene(scene)
         , elements(elements)
         , u(u)
         , bonds(bonds)
         , t(t)
         , inside(dofs.get_fe(),
-                 QGauss<2>(dofs.get_fe().degree + more_points_in_rings),
+                 QGauss<dim>(dofs.get_fe().degree + more_points_in_rings(dim)),
                  needed_in_rings())
         , edge(dofs.get_fe(),
-               QGauss<1>(dofs.get_fe().degree + more_points_in_rings),
+               QGauss<dim - 1>(dofs.get_fe().degree + more_points_in_rings(dim)),
                needed_in_rings() | update_normal_vectors)
         , nodes(dofs.get_fe().n_dofs_per_cell())
       {}
 
-      void add(const Cell &cell, std::vector<CrackEndIntegral> &ends)
+      template <typename Integral>
+      void add(const Cell &cell, std::vector<Integral> &ends)
       {
         inside.reinit(cell);
-        visit(cell, inside, [&](const RingPoint &point, const unsigned int) {
-          for (CrackEndIntegral &end : ends)
+        visit(cell, inside, [&](const RingPoint<dim> &point, const unsigned int) {
+          for (auto &end : ends)
             end.add(point);
         });
         // Beside a crack that bonds know there is a body up to the crack.
@@ -143,8 +151,8 @@ namespace PeriDeal
                 !elements.cut_cells()[cell->neighbor(face)->active_cell_index()])
               continue;
             edge.reinit(cell, face);
-            visit(cell, edge, [&](const RingPoint &point, const unsigned int q) {
-              for (CrackEndIntegral &end : ends)
+            visit(cell, edge, [&](const RingPoint<dim> &point, const unsigned int q) {
+              for (auto &end : ends)
                 end.add_strip(point, edge.normal_vector(q), bonds);
             });
           }
@@ -152,82 +160,101 @@ namespace PeriDeal
 
     private:
       template <typename Visit>
-      void visit(const Cell &cell, const FEValuesBase<2> &values, const Visit &give)
+      void visit(const Cell &cell, const FEValuesBase<dim> &values, const Visit &give)
       {
         cell->get_dof_indices(nodes);
-        const auto      &force = scene.initial_and_source.body_force;
-        const CellPoints points(values,
-                                nodes,
-                                scene,
-                                elements.temperature_change(),
-                                is_warm(scene.elasticity));
+        const auto           &force = scene.initial_and_source.body_force;
+        const CellPoints<dim> points(values,
+                                     nodes,
+                                     scene,
+                                     elements.temperature_change(),
+                                     is_warm<dim>(scene.elasticity));
         for (const unsigned int q : values.quadrature_point_indices())
           {
-            RingPoint point = points.at(q, u);
-            for (unsigned int d = 0; d < 2 && !force.empty(); ++d)
+            RingPoint<dim> point = points.at(q, u);
+            for (unsigned int d = 0; d < dim && !force.empty(); ++d)
               point.force[d] = force[d].value(point.place, t);
             give(point, q);
           }
       }
 
-      const Scene<2>                      &scene;
-      const ElasticElements<2>            &elements;
+      const Scene<dim>                    &scene;
+      const ElasticElements<dim>          &elements;
       const Vector                        &u;
       const bool                           bonds;
       const double                         t;
-      FEValues<2>                          inside;
-      FEFaceValues<2>                      edge;
+      FEValues<dim>                        inside;
+      FEFaceValues<dim>                    edge;
       std::vector<types::global_dof_index> nodes;
     };
   } // namespace
 
 
-  std::vector<StressIntensity> intensities_of_cells(const Scene<2>           &scene,
-                                                    const ElasticElements<2> &elements,
-                                                    const DoFHandler<2>      &dofs,
-                                                    const Vector             &u,
-                                                    const bool                bonds,
-                                                    const double              t)
+  template <int dim>
+  std::vector<StressIntensity> intensities_of_cells(const Scene<dim>           &scene,
+                                                    const ElasticElements<dim> &elements,
+                                                    const DoFHandler<dim>      &dofs,
+                                                    const Vector               &u,
+                                                    const bool                  bonds,
+                                                    const double                t)
   {
-    std::vector<StressIntensity>  list;
-    std::vector<CrackEndIntegral> ends = crack_end_integrals(scene, elements.crack_time());
+    std::vector<StressIntensity> list;
+    auto                         ends = crack_end_integrals(scene, elements.crack_time());
     if (ends.empty())
       return list;
-    RingCells cells(scene, elements, dofs, u, bonds, t);
+    RingCells<dim> cells(scene, elements, dofs, u, bonds, t);
     u.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned() && !elements.cut_cells()[cell->active_cell_index()] &&
-          std::any_of(ends.begin(), ends.end(), [&](const CrackEndIntegral &end) {
+          std::any_of(ends.begin(), ends.end(), [&](const auto &end) {
             return end.reaches(cell->center(), cell->diameter());
           }))
         cells.add(cell, ends);
     u.set_ghost_state(false);
-    for (CrackEndIntegral &end : ends)
+    for (auto &end : ends)
       list.push_back(end.result(dofs.get_communicator()));
     return list;
   }
 
 
-  std::vector<StressIntensity> intensities_of_bonds(const Scene<2>           &scene,
-                                                    const ElasticElements<2> &elements,
-                                                    const Vector             &u,
-                                                    const double              t)
+  template <int dim>
+  std::vector<StressIntensity> intensities_of_bonds(const Scene<dim>           &scene,
+                                                    const ElasticElements<dim> &elements,
+                                                    const Vector               &u,
+                                                    const double                t)
   {
-    const Nodes<2> &nodes  = elements.bonds().families().nodes();
-    const Vector   &change = elements.temperature_change();
+    const Nodes<dim> &nodes  = elements.bonds().families().nodes();
+    const Vector     &change = elements.temperature_change();
     u.update_ghost_values();
-    const auto list = bond_intensities(
+    const auto list = bond_intensities<dim>(
       scene,
       elements.bonds().families(),
       [&](const unsigned int i, const unsigned int k) {
         // Elements may number ghosts in another order.
         const auto index = nodes.partitioner()->local_to_global(i);
-        return k < 2 ? u(2 * index + k) : strain_of_heat(scene, nodes.position(i), change, index);
+        return k < dim ? u(dim * index + k) :
+                         strain_of_heat(scene, nodes.position(i), change, index);
       },
-      is_warm(scene.elasticity),
+      is_warm<dim>(scene.elasticity),
       t,
       elements.crack_time());
     u.set_ghost_state(false);
     return list;
   }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                          \
+  template std::vector<StressIntensity> intensities_of_cells(const Scene<dim> &,           \
+                                                             const ElasticElements<dim> &, \
+                                                             const DoFHandler<dim> &,      \
+                                                             const Vector &,               \
+                                                             const bool,                   \
+                                                             const double);                \
+  template std::vector<StressIntensity> intensities_of_bonds(const Scene<dim> &,           \
+                                                             const ElasticElements<dim> &, \
+                                                             const Vector &,               \
+                                                             const double);
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

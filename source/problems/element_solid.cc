@@ -226,7 +226,7 @@ namespace PeriDeal
 
       std::vector<StressIntensity> stress_intensities(const double time) const override
       {
-        if constexpr (dim == 2)
+        if constexpr (dim > 1)
           return model == ModelKind::peridynamics ?
                    intensities_of_bonds(scene, *elements, this->displacement, time) :
                    intensities_of_cells(scene,

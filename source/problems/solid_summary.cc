@@ -163,8 +163,6 @@ namespace PeriDeal
       if (scene.cracks.cracks.empty() || !scene.elasticity.is_static() ||
           material.fracture_energy || material.critical_stretch)
         return "";
-      if (dim == 3)
-        return "they are computed in two dimensions only";
       bool found = false, all = true;
       for (const auto &[name, model] : models.items())
         {
@@ -175,8 +173,8 @@ namespace PeriDeal
       if (found)
         return all ?
                  "" :
-                 "peridynamics has none: its rings begin beyond one horizon from the end of a crack, and there is no room for some cells around that";
-      return "they need a box or a plate whose moduli are the same everywhere, and room around the end of a crack for some cells, with peridynamics beyond one horizon";
+                 "peridynamics has none: its rings begin beyond one horizon from the end or front of a crack, and there is no room for some cells around that";
+      return "they need a box or a plate whose moduli are the same everywhere, and room around the end or front of a crack for some cells, with peridynamics beyond one horizon";
     }
   } // namespace
 

@@ -131,6 +131,13 @@ namespace PeriDeal
         row("stress intensity I at " + end.name, end.mode_1);
         row("stress intensity II at " + end.name, end.mode_2);
         ends[end.name] = {{"J-integral", end.j}, {"I", end.mode_1}, {"II", end.mode_2}};
+        if (end.mode_3)
+          {
+            row("stress intensity III at " + end.name, *end.mode_3);
+            ends[end.name]["III"] = *end.mode_3;
+          }
+        if (end.place)
+          ends[end.name]["place"] = {(*end.place)[0], (*end.place)[1], (*end.place)[2]};
       }
     context.record.balances[problem.name()] = {{"boundary force", balance.sides},
                                                {"strain energy", energy},

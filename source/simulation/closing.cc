@@ -89,21 +89,24 @@ namespace PeriDeal
               ends.push_back(end);
       constexpr std::size_t most = 8;
       for (std::size_t k = 0; k < std::min(most, ends.size()); ++k)
-        for (const std::string mode : {"I", "II"})
+        for (const std::string mode : {"I", "II", "III"})
           add_of_models(lines, "K_" + mode + " at " + ends[k], summary, [&](const json &model) {
             if (!model.contains("stress intensity") || !model["stress intensity"].contains(ends[k]))
               return std::string();
-            const json  &found = model["stress intensity"][ends[k]];
-            const double k_1 = found["I"], k_2 = found["II"];
-            // The other mode is worth a line where it is more than an error of the method.
+            const json &found       = model["stress intensity"][ends[k]];
+            double      most_of_all = 0.;
+            for (const char *const other : {"I", "II", "III"})
+              most_of_all = std::max(most_of_all, std::abs(found.value(other, 0.)));
+            // Other modes are worth a line where they are more than an error of the method.
             constexpr double small = 0.01;
-            if (mode == "II" && std::abs(k_2) < small * std::abs(k_1))
+            if (!found.contains(mode) ||
+                (mode != "I" && std::abs(found.value(mode, 0.)) < small * most_of_all))
               return std::string();
-            return rounded_text(mode == "I" ? k_1 : k_2, 4);
+            return rounded_text(found.value(mode, 0.), 4);
           });
       if (ends.size() > most)
         lines.push_back("stress intensities at " + std::to_string(ends.size() - most) +
-                        " more ends of cracks are in totals.csv");
+                        " more ends or places of cracks are in totals.csv");
       if (summary.contains("no stress intensity"))
         lines.push_back(
           (ends.empty() ? "no stress intensity factors: " : "stress intensity factors: ") +

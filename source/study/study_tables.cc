@@ -129,8 +129,9 @@ namespace PeriDeal
               found[name_at_probe(column, row["coordinates"], field)] = row[column];
       if (model.contains("stress intensity"))
         for (const auto &[crack_end, values] : model["stress intensity"].items())
-          for (const char *const mode : {"I", "II"})
-            found[std::string("K_") + mode + " at " + crack_end] = values[mode];
+          for (const char *const mode : {"I", "II", "III"})
+            if (values.contains(mode))
+              found[std::string("K_") + mode + " at " + crack_end] = values[mode];
       for (const char *const key : {"effective conductivity", "strain energy"})
         if (model.contains(key))
           found[key] = model[key];

@@ -19,8 +19,9 @@ namespace PeriDeal
         const RowResult::Json &models = result.results["models"];
         if (models.contains(model) && models[model].contains("stress intensity"))
           for (const auto &end : models[model]["stress intensity"].items())
-            for (const char *const mode : {"I", "II"})
-              numbers.push_back(end.value()[mode].get<double>());
+            for (const char *const mode : {"I", "II", "III"})
+              if (end.value().contains(mode))
+                numbers.push_back(end.value()[mode].get<double>());
         return numbers;
       }
     std::vector<const RowResult::Json *> of_model;

@@ -62,10 +62,10 @@ namespace
       return u;
     }
 
-    RingPoint at(const Point<2> &p, const double area) const
+    RingPoint<2> at(const Point<2> &p, const double area) const
     {
       constexpr double h = 1e-5;
-      RingPoint        point;
+      RingPoint<2>     point;
       point.place  = p;
       point.weight = area;
       for (unsigned int d = 0; d < 2; ++d)
@@ -148,7 +148,7 @@ TEST(CrackIntensity, nodes_on_the_crack_have_one_side)
                          moduli,
                          PlaneState::stress,
                          on_line);
-    RingPoint        point;
+    RingPoint<2>     point;
     point.place          = Point<2>(-0.3, y);
     point.weight         = 1.;
     point.gradient[0][0] = 1.;

@@ -4,16 +4,17 @@
 #pragma once
 
 #include <perideal/analysis/family_fit.h>
-#include <perideal/analysis/stress_intensity.h>
+#include <perideal/analysis/front_intensity.h>
 
 #include <vector>
 
 namespace PeriDeal
 {
   /**
-   * CrackEndIntegral of peridynamics alone: gradients are those of FamilyFit, the stress follows
-   * from them by Hooke's law, and each node stands for its cell of the lattice, which is integrated
-   * with 3 x 3 points. Beside the crack nothing is left out.
+   * CrackEndIntegral, in three dimensions FrontIntegral, of peridynamics alone: gradients are those
+   * of FamilyFit, the stress follows from them by Hooke's law, and each node stands for its cell of
+   * the lattice, which is integrated with 3 x 3 or 2 x 2 x 2 points. Beside the crack nothing is
+   * left out.
    *
    * @param values of the displacements and, if it is warm, of the thermal strain in the plane
    *               (RingPoint); of nodes known here
@@ -21,10 +22,11 @@ namespace PeriDeal
    * @param crack_time as for crack_end_integrals()
    * Collective.
    */
-  std::vector<StressIntensity> bond_intensities(const Scene<2>             &scene,
-                                                const Families<2>          &families,
-                                                const FamilyFit<2>::Values &values,
-                                                const bool                  warm,
-                                                const double                t,
-                                                const double                crack_time);
+  template <int dim>
+  std::vector<StressIntensity> bond_intensities(const Scene<dim>                      &scene,
+                                                const Families<dim>                   &families,
+                                                const typename FamilyFit<dim>::Values &values,
+                                                const bool                             warm,
+                                                const double                           t,
+                                                const double                           crack_time);
 } // namespace PeriDeal

@@ -17,31 +17,35 @@
 namespace PeriDeal
 {
   /**
-   * What holds at the end of a crack in two dimensions. Units: force per length (J), stress times
-   * the square root of length (K).
+   * What holds at the end of a crack in two dimensions, or at a place of its front in three. Units:
+   * force per length (J), stress times the square root of length (K).
    */
   struct StressIntensity
   {
-    std::string name; // of the end, as in `crack 1 end 2`
+    std::string name; // of the end or place, as in `crack 1 end 2`
     double      j      = 0.;
     double      mode_1 = 0., mode_2 = 0.;
+
+    std::optional<double>           mode_3 = std::nullopt; // of fronts, as is the place
+    std::optional<dealii::Point<3>> place  = std::nullopt;
   };
 
 
   /** A point of the rings about ends of cracks, with what is known there. */
+  template <int dim>
   struct RingPoint
   {
-    dealii::Point<2>     place;
-    double               weight = 0.; // the share of the area
-    dealii::Tensor<2, 2> gradient;    // [i][j] = du_i/dx_j
-    dealii::Tensor<1, 2> force;       // b, per volume
+    dealii::Point<dim>     place;
+    double                 weight = 0.; // the share of the area or volume
+    dealii::Tensor<2, dim> gradient;    // [i][j] = du_i/dx_j
+    dealii::Tensor<1, dim> force;       // b, per volume
 
     /** In the plane: alpha dT, times 1 + nu in plane strain; and its gradient. */
-    double               thermal_strain = 0.;
-    dealii::Tensor<1, 2> thermal_slope;
+    double                 thermal_strain = 0.;
+    dealii::Tensor<1, dim> thermal_slope;
 
     /** On that side of the crack the material lies; empty: at the place itself. */
-    std::optional<dealii::Point<2>> node = std::nullopt;
+    std::optional<dealii::Point<dim>> node = std::nullopt;
   };
 
 
@@ -89,7 +93,7 @@ namespace PeriDeal
     /** Whether what lies at most so far from a point counts. */
     bool reaches(const dealii::Point<2> &p, const double radius) const;
 
-    void add(const RingPoint &point);
+    void add(const RingPoint<2> &point);
 
     /**
      * The strip from the edge of a cell on to the line of the crack, behind its end, where cells
@@ -98,19 +102,14 @@ namespace PeriDeal
      * @param for_j also for J. Where the cells of the strip are no part of the body it has none
      *              there; the near-tip fields of K_m have tractions on such an edge.
      */
-    void add_strip(const RingPoint &point, const dealii::Tensor<1, 2> &normal, const bool for_j);
+    void add_strip(const RingPoint<2> &point, const dealii::Tensor<1, 2> &normal, const bool for_j);
 
     /** The sums of all processes. Collective. */
     StressIntensity result(const MPI_Comm communicator);
 
   private:
     /** In the frame; behind the end no farther than the crack on the side of a node. */
-    dealii::Tensor<1, 2> from_end(const RingPoint &point, double &angle) const;
-
-    /** du_i/dx_1 of the near-tip field of unit intensity. */
-    dealii::Tensor<1, 2> near_slope(const unsigned int mode,
-                                    const double       r,
-                                    const double       angle) const;
+    dealii::Tensor<1, 2> from_end(const RingPoint<2> &point, double &angle) const;
 
     /** q, and the part of the field that HalfPowerFit has. */
     double weight_at(const double r) const;
@@ -126,7 +125,7 @@ namespace PeriDeal
                                      const double                reach,
                                      const double                thermal_strain) const;
 
-    void add(const RingPoint &point, const bool for_j);
+    void add(const RingPoint<2> &point, const bool for_j);
 
     /** What heat does where HalfPowerFit has the fields: to J and K_m, as in sums. */
     std::array<double, 3> work_of_heat_in_core() const;
