@@ -218,8 +218,8 @@ namespace PeriDeal
           unsigned int n_rounds = 0, step_of_save = 0;
           for (unsigned int k = 1; k <= n_steps; ++k)
             loading->step(u, time(k), [&](const double t) {
-              // In motion steps are divided where bonds begin to break.
-              EXPECT_GT(t, moves ? time(k - 1) : 0.999 * time(k));
+              // Steps are divided where bonds begin to break.
+              EXPECT_GT(t, time(k - 1));
               EXPECT_LE(t, time(k));
               if (++n_rounds != n_before)
                 return;
