@@ -85,10 +85,15 @@ def is_loaded(condition):
     return False
 
 
+def in_time(series):
+    """Pairs (time, value) in the order of time; of a time at which bonds break that before comes first."""
+    return sorted(series, key=lambda pair: pair[0])
+
+
 def largest_component(run, side, condition=""):
     """The force on a side in its largest component, or None where it is 0 or unknown."""
     found = [Force(side, axis, of_models, condition) for axis in "xyz"[:run.dimension]
-             for of_models in [{m: sorted(s) for m, s in
+             for of_models in [{m: in_time(s) for m, s in
                                 run.totals.get(f"force on {side} in {axis}", {}).items()
                                 if m in run.models}] if of_models]
     force = max(found, key=lambda f: abs(f.peak()[1]), default=None)
@@ -119,7 +124,7 @@ def forces(run):
 
 def first_break(run):
     """{model: time at which the first bonds broke, that of the first row with broken bonds in older results}."""
-    found = {m: [t for t, v in sorted(s) if v > 0] for m, s in run.totals.get(BROKEN, {}).items()}
+    found = {m: [t for t, v in in_time(s) if v > 0] for m, s in run.totals.get(BROKEN, {}).items()}
     return {m: run.summary["models"].get(m, {}).get("first broken bonds", times[0]) for m, times in found.items() if times}
 
 
@@ -130,7 +135,7 @@ def n_times(run):
 
 def draw(axes, series, color, dashes="-", marker="o"):
     """One curve; its points are marked where they are few."""
-    time, value = np.array(sorted(series)).T
+    time, value = np.array(in_time(series)).T
     axes.plot(time, value, color=color, linestyle=dashes, linewidth=1.5, zorder=3,
               marker=marker if len(time) <= FEW else None, markersize=3.2,
               markerfacecolor="white", markeredgewidth=0.9)

@@ -35,7 +35,7 @@ class Panels:
 
     def draw(self, axes, model, series, start=None):
         """One series of (time, value); start: the initial value."""
-        series = sorted(series)
+        series = sorted(series, key=lambda pair: pair[0])  # of one time in the order told
         if start is not None and series[0][0] > 0:
             axes.plot(0, start, linestyle="none", marker="D", markersize=MARKER_SIZE,
                       color="#52606d", zorder=6, clip_on=False)

@@ -206,6 +206,6 @@ namespace PeriDeal
     for (unsigned int m = 0; m < 3; ++m)
       K[m] = factors[m] * Utilities::MPI::sum(sums[1 + m], communicator) / at.share;
     const double j = Utilities::MPI::sum(sums[0], communicator) / at.share;
-    return {at.name, j, K[0], K[1], K[2], at.place};
+    return {at.name, j, K[0], K[1], at.is_mirrored ? 0. : K[2], at.place};
   }
 } // namespace PeriDeal

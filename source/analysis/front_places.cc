@@ -169,6 +169,24 @@ namespace PeriDeal
       static constexpr double n_cells = 3., // in a ring
         margin                        = 0.9;
 
+      /** A plane of symmetry that goes through a place, straight across its front. */
+      bool is_mirror(const unsigned int side, const Point<3> &p, const Tensor<1, 3> &along) const
+      {
+        constexpr double   slack    = 1e-6;
+        const auto        &list     = scene.boundary_conditions.symmetry;
+        const unsigned int d        = side / 2;
+        const double       to_plane = side % 2 == 0 ? p[d] - lower[d] : upper[d] - p[d];
+        return std::find(list.begin(), list.end(), side) != list.end() &&
+               std::abs(to_plane) < slack * (upper[d] - lower[d]) &&
+               std::abs(along[d]) > (1. - slack) * along.norm();
+      }
+
+      /** In the box or on its sides, to round-off. */
+      bool is_within(const Point<3> &p) const
+      {
+        return room_to_sides(p, {}) > -1e-9 * (upper - lower).norm();
+      }
+
       /** Not at its sides either, where a crack has no front. */
       bool in_body(const Point<3> &p) const
       {
@@ -251,10 +269,17 @@ namespace PeriDeal
         const Tensor<1, 3> along = cross_product_3d(place.ahead, place.normal);
         double             outer = std::min(0.5 * margin * front.depth(place.place, place.ahead),
                                 margin * others / std::sqrt(2.));
-        for (unsigned int d = 0; d < 3; ++d)
-          outer = std::min(outer,
-                           margin * std::min(place.place[d] - lower[d], upper[d] - place.place[d]) /
-                             (std::hypot(place.ahead[d], place.normal[d]) + std::abs(along[d])));
+        for (unsigned int side = 0; side < 6; ++side)
+          {
+            const unsigned int d = side / 2;
+            const double to = side % 2 == 0 ? place.place[d] - lower[d] : upper[d] - place.place[d];
+            if (is_mirror(side, place.place, along))
+              place.is_mirrored = true;
+            else
+              outer = std::min(
+                outer,
+                margin * to / (std::hypot(place.ahead[d], place.normal[d]) + std::abs(along[d])));
+          }
         if (place.curvature != 0.) // far from the axis of the circle
           outer = std::min(outer, 0.75 / std::abs(place.curvature));
         place.half = outer;
@@ -274,8 +299,10 @@ namespace PeriDeal
               1 + static_cast<unsigned int>(n * edge.norm() / front.length);
             for (unsigned int k = 0; k < n_steps; ++k)
               {
-                const auto x = place.local(front.corners[i] + (k + 0.5) / n_steps * edge);
-                if (std::abs(x.x_1) > place.outer || std::abs(x.s) > place.half)
+                const Point<3> p = front.corners[i] + (k + 0.5) / n_steps * edge;
+                const auto     x = place.local(p);
+                if (std::abs(x.x_1) > place.outer || std::abs(x.s) > place.half ||
+                    !is_within(p)) // the other half of a ring, beyond a plane of symmetry
                   continue;
                 if (std::abs(x.x_1) > apart * place.inner)
                   return false;
@@ -292,7 +319,7 @@ namespace PeriDeal
         const Point<3>   p      = front.at(part * front.length);
         const Point<3>   before = front.at((part - nearby) * front.length),
                        behind   = front.at((part + nearby) * front.length);
-        if (!in_body(p))
+        if (!is_within(p))
           return {};
         FrontPlace place = start(p, behind - before, "front " + number_text(part));
         // The circle through three points.

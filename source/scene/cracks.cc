@@ -20,10 +20,14 @@ namespace PeriDeal
     template <int dim>
     std::string crack_name(const unsigned int index, const std::vector<Point<dim>> &crack)
     {
-      std::string name = "crack " + std::to_string(index + 1) + " (";
-      for (unsigned int i = 0; i < crack.size(); ++i)
+      constexpr unsigned int few = 8, shown = 3; // corners; of a disc there are many
+      const unsigned int     n    = crack.size() > few ? shown : crack.size();
+      std::string            name = "crack " + std::to_string(index + 1) + " (";
+      for (unsigned int i = 0; i < n; ++i)
         for (unsigned int d = 0; d < dim; ++d)
           name += (d > 0 ? "," : i > 0 ? " ; " : "") + number_text(crack[i][d]);
+      if (n < crack.size())
+        name += " ; ... " + std::to_string(crack.size()) + " corners";
       return name + ")";
     }
 

@@ -311,7 +311,15 @@ namespace PeriDeal
       {
         cracks.set_box(domain.lower, domain.upper);
         cracks.check_inside(domain.lower, domain.upper);
-        for (const std::string &note : cracks.parts_outside(domain.lower, domain.upper))
+        // Beyond planes of symmetry is the other half of the crack.
+        Point<dim> lower = domain.lower, upper = domain.upper;
+        for (const types::boundary_id side : boundary_conditions.symmetry)
+          for (const auto &corners : cracks.cracks)
+            for (const Point<dim> &p : corners)
+              if (double &bound = (side % 2 == 0 ? lower : upper)[side / 2];
+                  side % 2 == 0 ? p[side / 2] < bound : p[side / 2] > bound)
+                bound = p[side / 2];
+        for (const std::string &note : cracks.parts_outside(lower, upper))
           domain.notes.push_back(note);
         cracks.check_tips_inside(domain.lower, domain.upper, cracks.end_time);
       }

@@ -196,8 +196,6 @@ def scene_mistakes(folder):
         ("seed that is no whole number", {**BRITTLE, **SCATTER, "Material/Strength seed": "-1"}, ["'Strength seed' in section 'Material'", "-1"]),
         ("breaking of a body in motion", {**MOTION, "Models": "peridynamics", "Material/Fracture energy": "1", "Elasticity/Breaking": "at rest"},
          ["'Breaking' in section 'Elasticity'", "bodies at rest", "'dynamics'"]),
-        ("breaking in motion of the coupled model", {**BRITTLE, **FOLLOWING, "Elasticity/Breaking": "in motion"},
-         ["'Breaking' in section 'Elasticity'", "'in motion'", "'Models = peridynamics'", "'coupled'", "'at rest'"]),
         ("breaking of unbreakable bonds", {**ELASTIC, "Elasticity/Breaking": "at rest"}, ["'Breaking' in section 'Elasticity'", "bonds that break", "'Fracture energy'"]),
         ("unknown way of breaking", {**BRITTLE, "Elasticity/Breaking": "in moton"}, ["'Breaking' in section 'Elasticity'", "'in moton'", "at rest", "'in motion'"]),
         ("half a velocity", {**MOTION, "Initial and source/Initial velocity": "1"}, ["'Initial velocity'", "needs 2 components"]),

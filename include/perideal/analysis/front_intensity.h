@@ -31,6 +31,7 @@ namespace PeriDeal
     double               inner = 0., outer = 0.;
     double               half  = 0.; // of the length; 0: H = 1, the front from side to side
     double               share = 0.; // int q e_1 . nu ds along the front, nu normal to it
+    bool is_mirrored = false;        // on a plane of symmetry: the ring is half of one, K_III is 0
 
     struct Local
     {
@@ -120,9 +121,9 @@ namespace PeriDeal
   /**
    * Places along the fronts of the cracks of a scene in three dimensions that lie in the body, with
    * room for a ring of a few cells around: `crack 1 front 0.25`, at this part of the way along the
-   * corners, where these make a curve (the disc: four), `crack 1 edge 2`, the middle of the edge
-   * from the second corner, else; a straight one from side to side without room along it is taken
-   * as a whole. What has none, and when the list is empty: crack_end_integrals() in two dimensions.
+   * corners, where these make a curve (the disc: four; also on planes of symmetry), `crack 1 edge
+   * 2`, the middle of the edge from the second corner, else; a straight one from side to side
+   * without room along it is taken as a whole. What has none, and when the list is empty: crack_end_integrals() in two dimensions.
    * @param time, horizon as there
    */
   std::vector<FrontIntegral> crack_end_integrals(const Scene<3> &scene,
