@@ -123,7 +123,8 @@ namespace PeriDeal
    * room for a ring of a few cells around: `crack 1 front 0.25`, at this part of the way along the
    * corners, where these make a curve (the disc: four; also on planes of symmetry), `crack 1 edge
    * 2`, the middle of the edge from the second corner, else; a straight one from side to side
-   * without room along it is taken as a whole. What has none, and when the list is empty: crack_end_integrals() in two dimensions.
+   * without room along it is taken as a whole. What has none, and when the list is empty:
+   * crack_end_integrals() in two dimensions.
    * @param time, horizon as there
    */
   std::vector<FrontIntegral> crack_end_integrals(const Scene<3> &scene,
