@@ -379,7 +379,7 @@ namespace PeriDeal
     if (!any_pairs)
       return;
     show(u, true);
-    touch_here = false;
+    touch_here = of_nodes && touch_here; // of some nodes more may touch, not less
     for (const Row &row : rows)
       {
         if (of_nodes && !std::binary_search(of_nodes->begin(), of_nodes->end(), row.node))
