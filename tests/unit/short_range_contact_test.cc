@@ -117,7 +117,7 @@ namespace PeriDeal
       const double slope = (op.energy(up) - op.energy(down)) / (2. * step);
       EXPECT_NEAR(slope, -(r * w), 1e-7 * std::abs(slope));
       op.linearize(u);
-      op.multiply(y, w);
+      op.apply(y, w);
       Vector change(u);
       op.unbalanced(change, up, 0.);
       op.unbalanced(s, down, 0.);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "change_along.h"
@@ -46,6 +47,30 @@ namespace PeriDeal
           }
       return solved(tangents + sum * outer_product(normal, normal), lean); // that is regular
     }
+
+
+    /** Ghosts of a vector are up to date while this lives. */
+    class WithGhosts
+    {
+    public:
+      explicit WithGhosts(const Vector &vector)
+        : vector(vector)
+        , before(vector.has_ghost_elements())
+      {
+        vector.update_ghost_values();
+      }
+
+      ~WithGhosts()
+      {
+        vector.set_ghost_state(before);
+      }
+
+      WithGhosts(const WithGhosts &) = delete;
+
+    private:
+      const Vector &vector;
+      const bool    before;
+    };
   } // namespace
 
 
@@ -154,7 +179,9 @@ namespace PeriDeal
   template <int dim>
   void CrackContact<dim>::find_any()
   {
-    double any[2] = {rows.empty() ? 0. : 1., n_touching() > 0 ? 1. : 0.};
+    const bool touch =
+      std::any_of(rows.begin(), rows.end(), [](const Row &row) { return row.touches; });
+    double any[2] = {rows.empty() ? 0. : 1., touch ? 1. : 0.};
     Utilities::MPI::max(any, unknowns->get_mpi_communicator(), any);
     any_rows   = any[0] > 0.;
     any_closed = any[1] > 0.;
@@ -194,6 +221,24 @@ namespace PeriDeal
     leans.update_ghost_values();
     find_any();
     return released;
+  }
+
+
+  template <int dim>
+  void CrackContact<dim>::renew()
+  {
+    std::vector<unsigned int> owned(nodes->locally_owned_size());
+    std::iota(owned.begin(), owned.end(), 0);
+    set_rows(owned);
+  }
+
+
+  template <int dim>
+  double CrackContact<dim>::change(const std::vector<unsigned int> &of_nodes, const Vector &u)
+  {
+    const WithGhosts ghosts(u);
+    const double     released = set_rows(of_nodes, &u);
+    return any_rows ? Utilities::MPI::sum(released, unknowns->get_mpi_communicator()) : 0.;
   }
 
 
@@ -241,11 +286,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool CrackContact<dim>::update(const Vector &u)
+  bool CrackContact<dim>::update(const Vector &u, double &gained)
   {
+    gained = 0.; // it begins and ends at gaps of 0
     if (!any_rows)
       return false;
-    double flags[] = {0., 0.};
+    const WithGhosts ghosts(u);
+    double           flags[] = {0., 0.};
     for (Row &row : rows)
       {
         const bool touches = row.weight > 0. && is_closed(row, u.begin());
@@ -261,12 +308,23 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void CrackContact<dim>::find_pressures(const Vector &u, const bool strained) const
+  {
+    const WithGhosts ghosts(u);
+    for (const Row &row : rows)
+      pressures.local_element(row.node) =
+        row.touches ? row.weight * (gap(row, u.begin()) + (strained ? 0. : row.strained)) : 0.;
+    pressures.update_ghost_values();
+  }
+
+
   /** Of K u, from what presses at both ends of the node's lost bonds. */
   template <int dim>
-  void CrackContact<dim>::find_force(const Row &row) const
+  Tensor<1, dim> CrackContact<dim>::force_of(const Row &row) const
   {
-    row.force        = 0.;
-    const double own = pressures.local_element(row.node);
+    Tensor<1, dim> force;
+    const double   own = pressures.local_element(row.node);
     for (const End &end : row.ends)
       {
         double size = own * end.factor;
@@ -278,36 +336,34 @@ namespace PeriDeal
             size += other * end.stiffness *
                     share_across(-1. * end.direction, normals.normal(end.neighbor), lean);
           }
-        row.force -= size * end.direction;
+        force -= size * end.direction;
       }
+    return force;
   }
 
 
   template <int dim>
-  void CrackContact<dim>::add_forces(Vector       &y,
-                                     const Vector &u,
-                                     const bool    strained,
-                                     const double  multiple) const
+  void CrackContact<dim>::add_forces(Vector &y, const Vector &u, const double multiple) const
+  {
+    if (any_closed)
+      find_pressures(u, true);
+    for (const Row &row : rows)
+      row.force = any_closed ? force_of(row) : Tensor<1, dim>();
+    add_last_forces(y, multiple);
+  }
+
+
+  template <int dim>
+  void CrackContact<dim>::add_tangent(Vector &y, const Vector &x) const
   {
     if (!any_closed)
-      {
-        for (const Row &row : rows)
-          if (strained)
-            row.force = 0.;
-        return;
-      }
-    for (const Row &row : rows)
-      pressures.local_element(row.node) =
-        row.touches ? row.weight * (gap(row, u.begin()) + (strained ? 0. : row.strained)) : 0.;
-    pressures.update_ghost_values();
+      return;
+    find_pressures(x, false);
     for (const Row &row : rows)
       {
-        const Tensor<1, dim> last = row.force;
-        find_force(row);
+        const Tensor<1, dim> force = force_of(row);
         for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * row.node + d) += multiple * row.force[d];
-        if (!strained)
-          row.force = last;
+          y.local_element(dim * row.node + d) += force[d];
       }
   }
 
@@ -334,6 +390,7 @@ namespace PeriDeal
   {
     if (!any_rows)
       return 0.;
+    const WithGhosts ghosts(u);
     // In the order of nodes: the same digits in a run that is resumed.
     std::vector<std::pair<unsigned int, double>> energies;
     for (const Row &row : rows)
@@ -348,15 +405,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned int CrackContact<dim>::n_touching() const
+  void CrackContact<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
-    return std::count_if(rows.begin(), rows.end(), [](const Row &row) { return row.touches; });
-  }
-
-
-  template <int dim>
-  void CrackContact<dim>::exchange(Archive &archive, Vector nodal, const NodeKeys &keys)
-  {
+    Vector nodal(nodes);
     for (const Row &row : rows)
       nodal.local_element(row.node) = row.touches ? 1. : 0.;
     archive.exchange("touching", nodal, keys);

@@ -348,7 +348,7 @@ namespace PeriDeal
     this->initialize_vector(reactions);
     find_loads(loads, t);
     multiply(reactions, u);
-    this->add_contact(reactions, u, true);
+    contact->add_forces(reactions, u, 1.);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     if (zone_bonds)
       for (const types::boundary_id side : zone_bonds->mirrors())

@@ -68,8 +68,9 @@ namespace PeriDeal
     cut_by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
     assemble();
     this->keep_constant_loads();
-    if (zone_bonds && body.coupling.exchanges() && !body.cracks.on_faces())
-      this->make_contact();
+    if (zone_bonds && body.coupling.exchanges() && !body.cracks.on_faces() &&
+        body.elasticity.contact && this->may_part())
+      this->set_contact(zone_bonds->make_contact(nodes, unknowns));
   }
 
 
@@ -253,7 +254,7 @@ namespace PeriDeal
     note_parted(cells);
     if (!this->forgoes_diagonal)
       mend_diagonal(cells, rows);
-    return this->change_contact(rows, u) - Utilities::MPI::sum(gained, dofs.get_communicator());
+    return contact->change(rows, u) - Utilities::MPI::sum(gained, dofs.get_communicator());
   }
 
 
@@ -279,8 +280,8 @@ namespace PeriDeal
     hanging.condense(force_change);
     hanging.set(force_change, 0.);
     r -= force_change;
-    this->leave_out_contact(r);
-    this->add_contact(r, u, true, -1.);
+    contact->add_last_forces(r, 1.);
+    contact->add_forces(r, u, -1.);
     force_change   = 0.;
     changes_forces = false;
   }
@@ -474,7 +475,7 @@ namespace PeriDeal
     Vector image;
     this->initialize_vector(image);
     multiply(image, u);
-    return 0.5 * (u * image) - u * thermal_loads + thermal_energy + this->contact_energy(u);
+    return 0.5 * (u * image) - u * thermal_loads + thermal_energy + contact->energy(u);
   }
 
 

@@ -141,35 +141,35 @@ namespace PeriDeal
 
 
   template <int dim>
-  double ShortRangeContact<dim>::update(const Vector &u)
+  bool ShortRangeContact<dim>::update(const Vector &u, double &gained)
   {
     const MPI_Comm all = nodes.communicator();
+    gained             = 0.;
     if (!is_found)
       {
         find_asked();
         search(u);
-        return 0.;
+        return false;
       }
     double moves[3] = {farthest_move(u, at_search),
                        farthest_move(u, at_loss),
                        touch_here ? 1. : 0.};
     Utilities::MPI::max(moves, all, moves);
-    touch           = moves[2] > 0.;
-    const bool late = moves[1] > safe_after_loss * finest;
+    const bool late = moves[1] > safe_after_loss * finest, touch = moves[2] > 0.;
     if (moves[0] <= 0.5 * skin && !late)
-      return 0.;
-    const double before = late ? energy(u) : 0.;
+      return touch;
+    gained -= late ? energy(u) : 0.;
     search(u);
-    return late ? energy(u) - before : 0.;
+    gained += late ? energy(u) : 0.;
+    return touch;
   }
 
 
   template <int dim>
-  void ShortRangeContact<dim>::bonds_lost(const std::vector<unsigned int> &of_nodes,
-                                          const Vector                    &u)
+  double ShortRangeContact<dim>::change(const std::vector<unsigned int> &of_nodes, const Vector &u)
   {
     if (!is_found)
-      return;
+      return 0.;
     for (const unsigned int i : of_nodes)
       {
         is_whole[i] = false;
@@ -186,6 +186,7 @@ namespace PeriDeal
         const std::vector<double> now = values_of_asked(u);
         at_loss.insert(at_loss.end(), now.begin() + n_known, now.end());
       }
+    return 0.; // what has changed is found, and told, once they have moved
   }
 
 
@@ -337,7 +338,7 @@ namespace PeriDeal
     places.reinit(interleaved(layout, dim));
     for (std::size_t k = 0; k < others.size(); ++k)
       {
-        Row row{asked[k], {}};
+        Row row{asked[k], {}, {}};
         for (const unsigned int j : others[k])
           row.partners.push_back({layout.global_to_local(list[j].number),
                                   std::min(list[first + k].stiffness, list[j].stiffness),
@@ -372,31 +373,35 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ShortRangeContact<dim>::add_forces(Vector                          &y,
-                                          const Vector                    &u,
-                                          const std::vector<unsigned int> *of_nodes) const
+  void ShortRangeContact<dim>::add_forces(Vector &y, const Vector &u, const double multiple) const
   {
+    touch_here = false;
     if (!any_pairs)
       return;
     show(u, true);
-    touch_here = of_nodes && touch_here; // of some nodes more may touch, not less
     for (const Row &row : rows)
       {
-        if (of_nodes && !std::binary_search(of_nodes->begin(), of_nodes->end(), row.node))
-          continue;
-        Tensor<1, dim> force;
+        row.force = 0.;
         for (const Partner &partner : row.partners)
           {
             const Tensor<1, dim> apart = difference(row.node, partner.node);
             const double         r     = apart.norm();
             if (r >= partner.distance || r == 0.)
               continue;
-            force += partner.stiffness * (partner.distance - r) / r * apart;
+            row.force += partner.stiffness * (partner.distance - r) / r * apart;
             touch_here = true;
           }
-        for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * row.node + d) -= force[d];
       }
+    add_last_forces(y, multiple);
+  }
+
+
+  template <int dim>
+  void ShortRangeContact<dim>::add_last_forces(Vector &y, const double multiple) const
+  {
+    for (const Row &row : rows)
+      for (unsigned int d = 0; d < dim; ++d)
+        y.local_element(dim * row.node + d) -= multiple * row.force[d];
   }
 
 

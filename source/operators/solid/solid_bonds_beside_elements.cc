@@ -283,6 +283,7 @@ namespace PeriDeal
   double SolidBondsBesideElements<dim>::contact_family(const unsigned int            node,
                                                        std::vector<FacingBond<dim>> &list) const
   {
+    list.clear();
     if (!coupled->symmetric())
       return 0.;
     std::vector<Bond> bonds;
@@ -298,6 +299,20 @@ namespace PeriDeal
           {bond.neighbor, xi, 0.5 * bond.intact * xi.norm_square(), bond.weight == 0.});
       }
     return 1.;
+  }
+
+
+  template <int dim>
+  std::unique_ptr<CrackContact<dim>> SolidBondsBesideElements<dim>::make_contact(
+    const typename CrackContact<dim>::Layout &layout,
+    const typename CrackContact<dim>::Layout &unknowns) const
+  {
+    return std::make_unique<CrackContact<dim>>(
+      [this](const unsigned int node, std::vector<FacingBond<dim>> &bonds) {
+        return contact_family(node, bonds);
+      },
+      layout,
+      unknowns);
   }
 
 

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace PeriDeal
 {
@@ -70,6 +71,7 @@ namespace PeriDeal
     , history(body.crack_history())
     , cracks_of(history.representative(0.))
     , loads_vary(loads_depend_on_time(body))
+    , contact(std::make_unique<SolidContact>())
   {
     if (of_nodes)
       set_layout(of_nodes);
@@ -144,7 +146,9 @@ namespace PeriDeal
           keep_surrogate();
         take_loaded(time);
       }
-    exchange_contact(archive, keys);
+    if (archive.loads())
+      contact->renew();
+    contact->exchange(archive, keys);
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
   }
@@ -163,8 +167,7 @@ namespace PeriDeal
             before = joined;
           }
         apply_change(change, u == nullptr);
-        if (contact)
-          contact->set_rows(owned_nodes());
+        contact->renew();
         if (u)
           update_contact(*u);
         this->released_by_growth += u ? before - this->energy(*u) : 0.;
@@ -192,11 +195,41 @@ namespace PeriDeal
 
 
   template <int dim>
+  void SolidOperator<dim>::set_contact(std::unique_ptr<SolidContact> new_contact)
+  {
+    contact = std::move(new_contact);
+    set_contact_strains();
+    contact->renew();
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::set_contact_strains()
+  {
+    const bool warm = this->temperature_change().size() > 0 ||
+                      !is_zero(body.elasticity.temperature_change);
+    contact->set_strains(warm ?
+                           [this](const unsigned int node) { return thermal_strain_at(node); } :
+                           std::function<double(const unsigned int)>());
+  }
+
+
+  template <int dim>
+  bool SolidOperator<dim>::update_contact(const Vector &u)
+  {
+    double     gained  = 0.;
+    const bool changes = contact->update(u, gained);
+    take_released(-gained);
+    return changes;
+  }
+
+
+  template <int dim>
   void SolidOperator<dim>::apply(Vector &y, const Vector &x) const
   {
     ++this->applications;
     this->multiply(y, x);
-    add_contact(y, x, false);
+    contact->add_tangent(y, x);
     conditions->mask(y);
   }
 
@@ -214,7 +247,7 @@ namespace PeriDeal
   {
     ++this->applications;
     find_forces(r, u);
-    add_contact(r, u, true);
+    contact->add_forces(r, u, 1.);
     if (loads_vary)
       find_loads(scratch, t);
     NodeLoops::subtract_from(r.begin(),

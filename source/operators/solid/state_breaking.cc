@@ -145,8 +145,6 @@ namespace PeriDeal
       }
     const std::vector<unsigned int> list(rows.begin(), rows.end());
     solid.kinematics.find_forces_of(list, r.begin(), u.begin(), tau);
-    if (repulsion)
-      repulsion->add_forces(r, u, &list);
     for (const unsigned int i : list)
       for (unsigned int k = dim * i; k < dim * (i + 1); ++k)
         r.local_element(k) = scratch.local_element(k) - r.local_element(k);
@@ -170,7 +168,7 @@ namespace PeriDeal
         this->unbalanced(r, u, t);
         return;
       }
-    this->leave_out_contact(r);
+    contact->add_last_forces(r, 1.);
     u.update_ghost_values();
     std::vector<unsigned int> changed;
     Vector                    change;
@@ -182,7 +180,7 @@ namespace PeriDeal
     else
       mend_linear(r, u, changed, change);
     u.set_ghost_state(false);
-    this->add_contact(r, u, true, -1.);
+    contact->add_forces(r, u, -1.);
   }
 
 
@@ -197,63 +195,8 @@ namespace PeriDeal
     if (!change)
       return 0;
     apply_change(*change, true);
-    breakage.add_released(this->change_contact(change->nodes, u));
-    if (repulsion)
-      repulsion->bonds_lost(change->nodes, u);
+    breakage.add_released(contact->change(change->nodes, u));
     return this->n_broken_bonds() - before;
-  }
-
-
-  template <int dim>
-  double StateOperator<dim>::contact_family(const unsigned int            node,
-                                            std::vector<FacingBond<dim>> &list) const
-  {
-    const SolidRows<dim> &rows = solid.rows;
-    if (rows.is_on_lattice(node))
-      return 0.;
-    std::vector<typename Families<dim>::Member> family;
-    std::vector<std::pair<unsigned int, int>>   crossed;
-    solid.families.members_of(node, family);
-    const double own = solid.laws.stiffness(node), tiny = 1e-9 * body.horizon();
-    double       all = 0.; // of q, as if there were no crack
-    std::size_t  k   = rows.begin_of(node);
-    bool         any = false;
-    for (const auto &member : family)
-      {
-        const unsigned int   j  = member.neighbor;
-        const Tensor<1, dim> xi = solid.families.neighbors().bond_vector(node, j);
-        bool                 is_lost;
-        if (k < rows.end_of(node) && rows.neighbor(k) == j) // left out are those cut at first
-          is_lost = !breakage.broken_state().is_whole(k++);
-        else
-          {
-            solid.families.cracks().crossed_cracks(node, j, crossed);
-            is_lost = !crossed.empty() || solid.families.is_parted(node, j);
-            if (!is_lost)
-              continue; // a void does that
-          }
-        if (xi.norm() < tiny) // twins across a crack between doubled nodes
-          continue;
-        any = any || is_lost;
-        all += member.weight * xi.norm_square();
-        list.push_back({j, xi, 0.5 * member.weight * (own + solid.laws.stiffness(j)), is_lost});
-      }
-    if (!any)
-      {
-        list.clear();
-        return 0.;
-      }
-    // q may be that of what cracks have left.
-    const double whole =
-      std::min(1.,
-               solid.laws.weighted.local_element(node) * solid.families.nodes().volume(node) / all);
-    // Bonds that dilatations take from would be stiffer across a face than the body is.
-    const Moduli moduli = body.material.moduli(position(node));
-    const double stiff  = lambda_of(moduli, dim, body.elasticity.plane) + 2. * moduli.shear,
-                 takes  = solid.laws.volumetric && dim > 1 ?
-                            std::min(1., stiff / (3. * moduli.shear)) :
-                            1.;
-    return whole * takes;
   }
 
 
@@ -262,8 +205,6 @@ namespace PeriDeal
   {
     if (!change.damage)
       breakage.apply_change(change, loaded);
-    if (repulsion && !change.damage)
-      repulsion->forget();
     follow_bonds(change.damage ? &change.nodes : nullptr);
   }
 
@@ -292,22 +233,18 @@ namespace PeriDeal
     });
     if (archive.loads() && this->brittle())
       follow_bonds();
-    if (archive.loads() && repulsion)
-      repulsion->forget();
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                       \
-  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &)      \
-    const;                                                                                              \
-  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const;      \
-  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);          \
-  template double             StateOperator<dim>::contact_family(const unsigned int,                    \
-                                                     std::vector<FacingBond<dim>> &) const; \
-  template void               StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool);     \
-  template void               StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);      \
-  template void               StateOperator<dim>::exchange_bonds(Archive &,                             \
-                                                   const NodeKeys &,                      \
+#define PERIDEAL_INSTANTIATE(dim)                                                                   \
+  template double StateOperator<dim>::energy_of(const std::vector<unsigned int> &, const Vector &)  \
+    const;                                                                                          \
+  template void StateOperator<dim>::mend_unbalanced(Vector &, const Vector &, const double) const;  \
+  template unsigned long long StateOperator<dim>::break_bonds(const Vector &, double, double);      \
+  template void               StateOperator<dim>::apply_change(const ChangeSet<dim> &, const bool); \
+  template void               StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *);  \
+  template void               StateOperator<dim>::exchange_bonds(Archive &,                         \
+                                                   const NodeKeys &,                  \
                                                    const std::function<void()> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "inversion.h"
+#include "state_contact.h"
 
 namespace PeriDeal
 {
@@ -33,53 +34,20 @@ namespace PeriDeal
     find_stiffness_diagonal(solid, stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
     find_thermal_strains();
-    this->make_contact();
-    make_repulsion();
+    make_contact();
   }
 
 
   template <int dim>
-  void StateOperator<dim>::make_repulsion()
+  void StateOperator<dim>::make_contact()
   {
-    if (!nonlinear() || body.elasticity.is_static() || !body.elasticity.contact)
+    if (!body.elasticity.contact)
       return;
-    // So many nodes of a plane of the lattice touch one of another body. At a surface a node lacks
-    // half of its bonds: all of these together give it back half of what it lacks.
-    constexpr double    n_facing = dim == 1 ? 1. : dim == 2 ? 3. : 5.;
-    const Nodes<dim>   &nodes    = solid.families.nodes();
-    std::vector<double> stiffnesses;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        double sum = 0.;
-        solid.rows.for_each_stored(i, [&](const auto &bond) {
-          sum += bond.spring * bond.moment.norm_square();
-        });
-        stiffnesses.push_back(sum / (4. * n_facing));
-      }
-    repulsion = std::make_unique<ShortRangeContact<dim>>(
-      nodes,
-      body.horizon(),
-      [this](const unsigned int node, std::vector<unsigned int> &others) {
-        std::vector<typename Families<dim>::Member> family;
-        others.clear();
-        solid.rows.for_each_stored(node, [&](const auto &bond) {
-          if (bond.spring != 0.)
-            others.push_back(bond.neighbor);
-        });
-        solid.families.members_of(node, family);
-        return others.size() == family.size();
-      },
-      stiffnesses);
-  }
-
-
-  template <int dim>
-  bool StateOperator<dim>::update_contact(const Vector &u)
-  {
-    if (!repulsion)
-      return SolidOperator<dim>::update_contact(u);
-    breakage.add_released(-repulsion->update(u));
-    return repulsion->touches();
+    if (!nonlinear() && this->may_part())
+      this->set_contact(
+        make_crack_contact(solid, breakage.broken_state(), body, this->nodes, this->unknowns));
+    if (nonlinear() && !body.elasticity.is_static())
+      this->set_contact(make_short_range_contact(solid, body));
   }
 
 
@@ -200,8 +168,6 @@ namespace PeriDeal
     if (nonlinear() && solid.beyond)
       solid.beyond->add_geometric_forces(y, x);
     x.set_ghost_state(false);
-    if (repulsion)
-      repulsion->add_tangent(y, x);
   }
 
 
@@ -229,8 +195,6 @@ namespace PeriDeal
     if (solid.beyond)
       solid.beyond->add_strained_forces(y, u, tau);
     u.set_ghost_state(false);
-    if (repulsion)
-      repulsion->add_forces(y, u);
   }
 
 
@@ -245,8 +209,7 @@ namespace PeriDeal
     if (solid.beyond)
       solid.beyond->linearize(u, tau);
     u.set_ghost_state(false);
-    if (repulsion)
-      repulsion->linearize(u);
+    contact->linearize(u);
   }
 
 
@@ -280,7 +243,7 @@ namespace PeriDeal
     this->initialize_vector(reactions);
     find_loads(all_loads, t);
     find_forces(reactions, u);
-    this->add_contact(reactions, u, true);
+    contact->add_forces(reactions, u, 1.);
     reactions -= all_loads;
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     conditions->add_reactions(reactions, sums);
@@ -317,8 +280,7 @@ namespace PeriDeal
           }
       }
     u.set_ghost_state(false);
-    return Utilities::MPI::sum(sum, nodes.communicator()) + this->contact_energy(u) +
-           (repulsion ? repulsion->energy(u) : 0.);
+    return Utilities::MPI::sum(sum, nodes.communicator()) + contact->energy(u);
   }
 
 
@@ -354,7 +316,7 @@ namespace PeriDeal
             row += 2. * std::abs(solid.kinematics.stiffness_across(bond));
           });
         row += of_dilatations.local_element(i) * sum.norm();
-        row += of_tangent && repulsion ? repulsion->row_bound(i) : 0.;
+        row += of_tangent ? contact->row_bound(i) : 0.;
         largest = std::max(largest, factor * row / mass.local_element(dim * i));
       }
     return Utilities::MPI::max(largest, nodes.communicator());
@@ -460,7 +422,7 @@ namespace PeriDeal
                   solid.laws.memory_consumption() + solid.thermal.memory_consumption() +
                   solid.kinematics.memory_consumption() + rows.memory_consumption() +
                   (solid.beyond ? solid.beyond->memory_consumption() : 0) +
-                  (repulsion ? repulsion->memory_consumption() : 0);
+                  contact->memory_consumption();
     size.form = rows.has_lattice() ? "lattice" : "stored";
     return size;
   }

@@ -5,9 +5,8 @@
 
 #include <deal.II/base/tensor.h>
 
-#include <perideal/base/archive.h>
-#include <perideal/base/types.h>
 #include <perideal/operators/solid/crack_normals.h>
+#include <perideal/operators/solid/solid_contact.h>
 
 #include <functional>
 #include <unordered_map>
@@ -29,12 +28,11 @@ namespace PeriDeal
    *
    * Nodes at which enough whole bonds go on across the crack, as beside its end, have no contact.
    *
-   * Which nodes touch is found by update() and stays until the next one, so that forces are linear
-   * between. Ghosts of displacements are up to date where they are read. Forces are sums in the
-   * order of families: the same digits on any number of processes.
+   * Forces are linear from one update() to the next. They are sums in the order of families: the
+   * same digits on any number of processes.
    */
   template <int dim>
-  class CrackContact
+  class CrackContact : public SolidContact
   {
   public:
     using Bond   = FacingBond<dim>;
@@ -49,50 +47,20 @@ namespace PeriDeal
     /** @param nodes, unknowns layouts; ghosts are all neighbours */
     CrackContact(const FamilyOf &family_of, const Layout &nodes, const Layout &unknowns);
 
-    /**
-     * Find what is lost at some owned nodes. What is new does not touch, without u; else it does
-     * where it is closed there. Returns the energy that is released so at u by nodes of this
-     * process. Collective.
-     */
-    double set_rows(const std::vector<unsigned int> &of_nodes, const Vector *u = nullptr);
+    bool   update(const Vector &u, double &gained) override;
+    double change(const std::vector<unsigned int> &of_nodes, const Vector &u) override;
+    void   renew() override;
+    void   set_strains(const std::function<double(const unsigned int)> &strain_at) override;
+    void   add_forces(Vector &y, const Vector &u, const double multiple) const override;
+    void   add_last_forces(Vector &y, const double multiple) const override;
+    void   add_tangent(Vector &y, const Vector &x) const override;
 
-    /** Extensions are those beyond thermal strains s at nodes; empty: there are none. */
-    void set_strains(const std::function<double(const unsigned int)> &strain_at);
+    /** The energy of all nodes that touch at u, found or not. */
+    double energy(const Vector &u) const override;
 
-    /** Some node of some process has lost bonds. */
-    bool any() const
-    {
-      return any_rows;
-    }
-
-    /** Some node of some process touches. */
-    bool touches() const
-    {
-      return any_closed;
-    }
-
-    /** Find which nodes touch at u. Returns whether that changes anywhere. Collective. */
-    bool update(const Vector &u);
-
-    /**
-     * Add a multiple of K u of what touches to a vector of unknowns, with thermal strains minus
-     * their load. Collective.
-     */
-    void add_forces(Vector &y, const Vector &u, const bool strained, const double multiple) const;
-
-    /** Add a multiple of what add_forces() gave at last, with thermal strains. Not collective. */
-    void add_last_forces(Vector &y, const double multiple) const;
-
-    /** The energy of all nodes that touch at u, found or not. Collective. */
-    double energy(const Vector &u) const;
-
-    /** Owned nodes that touch. */
-    unsigned int n_touching() const;
-
-    /** Set which nodes touch to those of a mark at nodes, or mark them. */
-    void exchange(Archive &archive, Vector nodal, const NodeKeys &keys);
-
-    std::size_t memory_consumption() const;
+    /** Which nodes touch. */
+    void        exchange(Archive &archive, const NodeKeys &keys) override;
+    std::size_t memory_consumption() const override;
 
   private:
     struct End
@@ -115,6 +83,12 @@ namespace PeriDeal
       mutable dealii::Tensor<1, dim> force; // on the node, at last
     };
 
+    /**
+     * Find what is lost at some owned nodes. What is new does not touch, without u; else it does
+     * where it is closed there, ghosts up to date. Returns the energy that is released so at u by
+     * nodes of this process.
+     */
+    double set_rows(const std::vector<unsigned int> &of_nodes, const Vector *u = nullptr);
     Row   &row_of(const unsigned int node);
     void   make_row(Row &row);
     bool   has_whole_bonds_across(const dealii::Tensor<1, dim> &normal) const;
@@ -126,8 +100,9 @@ namespace PeriDeal
     double size_of_terms(const Row &row, const double *u) const;
     bool   is_closed(const Row &row, const double *u) const;
     double energy_of(const Row &row, const double *u) const;
-    void   find_force(const Row &row) const;
-    void   find_any();
+    void   find_pressures(const Vector &u, const bool strained) const;
+    dealii::Tensor<1, dim> force_of(const Row &row) const;
+    void                   find_any();
 
     const FamilyOf                                 family_of;
     const Layout                                   nodes, unknowns;

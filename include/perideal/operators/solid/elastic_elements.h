@@ -194,23 +194,18 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   protected:
-    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
-    bool   join_zone(const ChangeSet<dim> &change) override;
-    void   apply_change(const ChangeSet<dim> &change, const bool loaded) override;
-    void   find_loads(Vector &loads, const double t) const override;
-    void   surrogate_made() const override;
-    double contact_family(const unsigned int            node,
-                          std::vector<FacingBond<dim>> &list) const override
-    {
-      return zone_bonds ? zone_bonds->contact_family(node, list) : 0.;
-    }
-
+    void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool join_zone(const ChangeSet<dim> &change) override;
+    void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
+    void find_loads(Vector &loads, const double t) const override;
+    void surrogate_made() const override;
     void exchange_bonds(Archive                     &archive,
                         const NodeKeys              &keys,
                         const std::function<void()> &at_surrogate) override;
 
   private:
     using SolidOperator<dim>::body;
+    using SolidOperator<dim>::contact;
     using SolidOperator<dim>::nodes;
     using SolidOperator<dim>::unknowns;
     using SolidOperator<dim>::conditions;

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include <perideal/base/types.h>
 #include <perideal/mesh/nodes.h>
+#include <perideal/operators/solid/solid_contact.h>
 
 #include <functional>
 #include <memory>
@@ -31,7 +31,7 @@ namespace PeriDeal
    * same digits on any number of processes, and for a body that is loaded.
    */
   template <int dim>
-  class ShortRangeContact
+  class ShortRangeContact : public SolidContact
   {
   public:
     /**
@@ -51,44 +51,24 @@ namespace PeriDeal
                       const std::vector<double> &stiffnesses);
 
     /**
-     * To be called before anything else is asked for at u. Returns the energy that nodes have got
-     * which have come to be asked between others, by bonds that they have lost. Collective.
+     * To be called before anything else is asked for at u. Energy is gained where nodes have come
+     * to be asked between others, by bonds that they have lost. Returns whether nodes were nearer
+     * than d at the last add_forces().
      */
-    double update(const Vector &u);
-
-    /** These owned nodes have lost bonds, stretched ones, at u. To be called by all processes. */
-    void bonds_lost(const std::vector<unsigned int> &of_nodes, const Vector &u);
-
-    /** Some nodes of some process were nearer than d at the last add_forces() before update(). */
-    bool touches() const
-    {
-      return touch;
-    }
-
-    /** Bonds are others, whatever has happened to them. */
-    void forget()
+    bool   update(const Vector &u, double &gained) override;
+    double change(const std::vector<unsigned int> &of_nodes, const Vector &u) override;
+    void   renew() override
     {
       is_found = false;
     }
 
-    /** y -= F at u, of all owned nodes or of some. Collective. */
-    void add_forces(Vector                          &y,
-                    const Vector                    &u,
-                    const std::vector<unsigned int> *of_nodes = nullptr) const;
-
-    /** Collective. */
-    double energy(const Vector &u) const;
-
-    /** Make add_tangent() that at u. Collective. */
-    void linearize(const Vector &u);
-
-    /** y += K x. Collective. */
-    void add_tangent(Vector &y, const Vector &x) const;
-
-    /** At least the sum of the norms of the blocks that an owned node has of K. */
-    double row_bound(const unsigned int node) const;
-
-    std::size_t memory_consumption() const;
+    void        add_forces(Vector &y, const Vector &u, const double multiple) const override;
+    void        add_last_forces(Vector &y, const double multiple) const override;
+    void        linearize(const Vector &u) override;
+    void        add_tangent(Vector &y, const Vector &x) const override;
+    double      row_bound(const unsigned int node) const override;
+    double      energy(const Vector &u) const override;
+    std::size_t memory_consumption() const override;
 
   private:
     /** What a node is known by to all processes; see flattened(). */
@@ -110,8 +90,9 @@ namespace PeriDeal
 
     struct Row
     {
-      unsigned int         node;
-      std::vector<Partner> partners;
+      unsigned int                   node;
+      std::vector<Partner>           partners;
+      mutable dealii::Tensor<1, dim> force; // on the node, at last
     };
 
     void                                   find_asked();
@@ -137,7 +118,7 @@ namespace PeriDeal
     std::vector<unsigned int> asked;              // owned nodes
     std::vector<double>       at_search, at_loss; // u of these; the latter empty: none since
     std::vector<Row>          rows;               // in the order of nodes
-    bool                      is_found = false, any_pairs = false, touch = false;
+    bool                      is_found = false, any_pairs = false;
     mutable bool              touch_here = false;      // of the owned nodes, at last
     double                    skin       = 0., finest; // smallest spacing of all
     mutable Vector            places; // of the nodes that touch, and their partners

@@ -129,8 +129,10 @@ namespace PeriDeal
                        const CrackSideFactors &factors,
                        const ThermalStrain    &strain) const;
 
-    /** CrackContact::FamilyOf. */
-    double contact_family(const unsigned int node, std::vector<FacingBond<dim>> &list) const;
+    /** Across the bonds that are broken or cut; this has to outlive it. Arguments as there. */
+    std::unique_ptr<CrackContact<dim>> make_contact(
+      const typename CrackContact<dim>::Layout &nodes,
+      const typename CrackContact<dim>::Layout &unknowns) const;
 
     /** Mark owned nodes with broken bonds, and add what the others give to the trace. */
     void add_to(CrackSideFactors::Sums &sums) const;
@@ -160,6 +162,8 @@ namespace PeriDeal
                       Rows                                   &rows) const;
     double add_all(dealii::TrilinosWrappers::SparseMatrix &matrix,
                    const CrackSideFactors                 *factors) const;
+    /** CrackContact::FamilyOf. */
+    double contact_family(const unsigned int node, std::vector<FacingBond<dim>> &list) const;
     /** xi xi^T, of which a bond's weight is the factor. */
     dealii::Tensor<2, dim> block_of(const unsigned int node, const Bond &bond) const;
     void                   unknowns_of(const Family                                 &family,

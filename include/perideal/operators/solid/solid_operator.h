@@ -6,8 +6,8 @@
 #include <deal.II/base/partitioner.h>
 
 #include <perideal/laws/elasticity.h>
-#include <perideal/operators/solid/crack_contact.h>
 #include <perideal/operators/solid/displacement_conditions.h>
+#include <perideal/operators/solid/solid_contact.h>
 #include <perideal/scene/crack_history.h>
 
 #include <functional>
@@ -133,45 +133,26 @@ namespace PeriDeal
      */
     virtual void apply_change(const ChangeSet<dim> &change, const bool loaded) = 0;
 
-    /** y = -F(u), without loads. */
+    /** y = -F(u), without loads and contact. */
     virtual void find_forces(Vector &y, const Vector &u) const
     {
       this->multiply(y, u);
     }
 
-    /**
-     * Let faces of cracks bear pressure if the scene wants it, of bonds that contact_family()
-     * gives; to be called once these are known. Collective.
-     */
-    void make_contact();
+    /** Let parts of the body touch each other, with the thermal strains of now. Collective. */
+    void set_contact(std::unique_ptr<SolidContact> new_contact);
 
-    /** CrackContact::FamilyOf. */
-    virtual double contact_family(const unsigned int,
-                                  std::vector<FacingBond<dim>> & /*bonds*/) const
+    /** Cracks or bonds that break may part the body. Not collective. */
+    bool may_part() const
     {
-      return 0.;
+      return !body.cracks.cracks.empty() || this->may_release_energy();
     }
 
     /** Thermal strains have changed. */
     void set_contact_strains();
 
-    /** As CrackContact::add_forces(). Collective. */
-    void add_contact(Vector       &y,
-                     const Vector &u,
-                     const bool    strained,
-                     const double  multiple = 1.) const;
-
-    /** The energy of contact at u, whose ghosts are brought up to date. Collective. */
-    double contact_energy(const Vector &u) const;
-
-    /**
-     * To be called when these owned nodes, in ascending order, have lost or got bonds at u. Returns
-     * what contact has released. Collective.
-     */
-    double change_contact(const std::vector<unsigned int> &of_nodes, const Vector &u);
-
-    /** Take the forces of contact out of r, which unbalanced() has just given. Not collective. */
-    void leave_out_contact(Vector &r) const;
+    /** Energy that contact has released by being found. */
+    virtual void take_released(const double /*energy*/) {}
 
     /** What surrogate() gives, of the body as it is now. Collective. */
     virtual void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const = 0;
@@ -239,16 +220,14 @@ namespace PeriDeal
     };
 
     /** @param u at which energy is released; null: by a body that is loaded, which has told it. */
-    void                      take(const ChangeSet<dim> &change, const Vector *u);
-    void                      take_loaded(const double time);
-    std::vector<unsigned int> owned_nodes() const;
-    void                      exchange_contact(Archive &archive, const NodeKeys &keys);
+    void take(const ChangeSet<dim> &change, const Vector *u);
+    void take_loaded(const double time);
 
-    Vector                             constant_loads;
-    mutable Surrogate                  latest;
-    std::unique_ptr<CrackContact<dim>> contact; // null: faces of cracks bear nothing
+    Vector            constant_loads;
+    mutable Surrogate latest;
 
   protected:
-    mutable Vector scratch;
+    mutable Vector                scratch;
+    std::unique_ptr<SolidContact> contact; // never null
   };
 } // namespace PeriDeal

@@ -84,7 +84,6 @@ namespace PeriDeal
     }
 
     unsigned long long break_bonds(const Vector &u, double t, double share = 0.) override;
-    bool               update_contact(const Vector &u) override;
 
     double stretch_over_critical(const Vector &u) override
     {
@@ -116,25 +115,28 @@ namespace PeriDeal
       marks_of_surrogate = breakage.n_marks();
     }
 
-    void   exchange_bonds(Archive                     &archive,
-                          const NodeKeys              &keys,
-                          const std::function<void()> &at_surrogate) override;
-    void   apply_change(const ChangeSet<dim> &change, const bool loaded) override;
-    void   find_forces(Vector &y, const Vector &u) const override;
-    double contact_family(const unsigned int            node,
-                          std::vector<FacingBond<dim>> &list) const override;
-    void   find_loads(Vector &loads, const double t) const override;
+    void exchange_bonds(Archive                     &archive,
+                        const NodeKeys              &keys,
+                        const std::function<void()> &at_surrogate) override;
+    void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
+    void find_forces(Vector &y, const Vector &u) const override;
+    void find_loads(Vector &loads, const double t) const override;
+    void take_released(const double energy) override
+    {
+      breakage.add_released(energy);
+    }
 
   private:
     using SolidOperator<dim>::body;
     using SolidOperator<dim>::conditions;
+    using SolidOperator<dim>::contact;
     using SolidOperator<dim>::mass;
     using SolidOperator<dim>::stiffness_diagonal;
     using SolidOperator<dim>::thermal_loads;
     using SolidOperator<dim>::scratch;
 
     void find_conditions(const Nodes<dim> &nodes);
-    void make_repulsion();
+    void make_contact();
     void find_thermal_strains();
     void find_thermal_loads();
 
@@ -173,7 +175,6 @@ namespace PeriDeal
     BondBreaking<dim>                         breakage;
     mutable typename BondBreaking<dim>::Count marks_of_surrogate{};
     mutable Vector                            tau; // tau_i = c_i theta_i/q_i; 0 without dilatations
-    mutable std::vector<CellCorner<dim>>      corners;   // once they have been asked for
-    std::unique_ptr<ShortRangeContact<dim>>   repulsion; // or none
+    mutable std::vector<CellCorner<dim>>      corners; // once they have been asked for
   };
 } // namespace PeriDeal

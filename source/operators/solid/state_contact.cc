@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "state_contact.h"
+
+#include <perideal/operators/solid/crack_contact.h>
+#include <perideal/operators/solid/short_range_contact.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** CrackContact::FamilyOf. */
+    template <int dim>
+    double family_of(const SolidBonds<dim>        &solid,
+                     const BondState              &state,
+                     const BodyParameters<dim>    &body,
+                     const unsigned int            node,
+                     std::vector<FacingBond<dim>> &list)
+    {
+      const SolidRows<dim> &rows = solid.rows;
+      list.clear();
+      if (rows.is_on_lattice(node))
+        return 0.;
+      std::vector<typename Families<dim>::Member> family;
+      std::vector<std::pair<unsigned int, int>>   crossed;
+      solid.families.members_of(node, family);
+      const double own = solid.laws.stiffness(node), tiny = 1e-9 * body.horizon();
+      double       all = 0.; // of q, as if there were no crack
+      std::size_t  k   = rows.begin_of(node);
+      bool         any = false;
+      for (const auto &member : family)
+        {
+          const unsigned int   j  = member.neighbor;
+          const Tensor<1, dim> xi = solid.families.neighbors().bond_vector(node, j);
+          bool                 is_lost;
+          if (k < rows.end_of(node) && rows.neighbor(k) == j) // left out are those cut at first
+            is_lost = !state.is_whole(k++);
+          else
+            {
+              solid.families.cracks().crossed_cracks(node, j, crossed);
+              is_lost = !crossed.empty() || solid.families.is_parted(node, j);
+              if (!is_lost)
+                continue; // a void does that
+            }
+          if (xi.norm() < tiny) // twins across a crack between doubled nodes
+            continue;
+          any = any || is_lost;
+          all += member.weight * xi.norm_square();
+          list.push_back({j, xi, 0.5 * member.weight * (own + solid.laws.stiffness(j)), is_lost});
+        }
+      if (!any)
+        {
+          list.clear();
+          return 0.;
+        }
+      // q may be that of what cracks have left.
+      const double whole = std::min(1.,
+                                    solid.laws.weighted.local_element(node) *
+                                      solid.families.nodes().volume(node) / all);
+      // Bonds that dilatations take from would be stiffer across a face than the body is.
+      const Moduli moduli = body.material.moduli(solid.families.nodes().position(node));
+      const double stiff  = lambda_of(moduli, dim, body.elasticity.plane) + 2. * moduli.shear,
+                   takes  = solid.laws.volumetric && dim > 1 ?
+                              std::min(1., stiff / (3. * moduli.shear)) :
+                              1.;
+      return whole * takes;
+    }
+
+
+    /** Of owned nodes, for ShortRangeContact. */
+    template <int dim>
+    std::vector<double> stiffnesses(const SolidRows<dim> &rows, const unsigned int n_owned)
+    {
+      // So many nodes of a plane of the lattice touch one of another body. At a surface a node
+      // lacks half of its bonds: all of these together give it back half of what it lacks.
+      constexpr double    n_facing = dim == 1 ? 1. : dim == 2 ? 3. : 5.;
+      std::vector<double> result;
+      for (unsigned int i = 0; i < n_owned; ++i)
+        {
+          double sum = 0.;
+          rows.for_each_stored(i, [&](const auto &bond) {
+            sum += bond.spring * bond.moment.norm_square();
+          });
+          result.push_back(sum / (4. * n_facing));
+        }
+      return result;
+    }
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<SolidContact> make_crack_contact(
+    const SolidBonds<dim>                                    &solid,
+    const BondState                                          &state,
+    const BodyParameters<dim>                                &body,
+    const std::shared_ptr<const Utilities::MPI::Partitioner> &nodes,
+    const std::shared_ptr<const Utilities::MPI::Partitioner> &unknowns)
+  {
+    return std::make_unique<CrackContact<dim>>(
+      [&](const unsigned int node, std::vector<FacingBond<dim>> &bonds) {
+        return family_of(solid, state, body, node, bonds);
+      },
+      nodes,
+      unknowns);
+  }
+
+
+  template <int dim>
+  std::unique_ptr<SolidContact> make_short_range_contact(const SolidBonds<dim>     &solid,
+                                                         const BodyParameters<dim> &body)
+  {
+    const Nodes<dim> &nodes = solid.families.nodes();
+    return std::make_unique<ShortRangeContact<dim>>(
+      nodes,
+      body.horizon(),
+      [&](const unsigned int node, std::vector<unsigned int> &others) {
+        std::vector<typename Families<dim>::Member> family;
+        others.clear();
+        solid.rows.for_each_stored(node, [&](const auto &bond) {
+          if (bond.spring != 0.)
+            others.push_back(bond.neighbor);
+        });
+        solid.families.members_of(node, family);
+        return others.size() == family.size();
+      },
+      stiffnesses(solid.rows, nodes.n_owned()));
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                       \
+  template std::unique_ptr<SolidContact> make_crack_contact<dim>(       \
+    const SolidBonds<dim> &,                                            \
+    const BondState &,                                                  \
+    const BodyParameters<dim> &,                                        \
+    const std::shared_ptr<const Utilities::MPI::Partitioner> &,         \
+    const std::shared_ptr<const Utilities::MPI::Partitioner> &);        \
+  template std::unique_ptr<SolidContact> make_short_range_contact<dim>( \
+    const SolidBonds<dim> &,                                            \
+    const BodyParameters<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
