@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/analysis/front_intensity.h>
 #include <perideal/analysis/tip_field.h>
@@ -54,9 +55,62 @@ namespace PeriDeal
   }
 
 
-  FrontIntegral::FrontIntegral(const FrontPlace &at, const double core, const Moduli &moduli)
+  namespace
+  {
+    // Of CoreWeight, in cells.
+    constexpr double core_gap = 2., core_reach = 5.;
+
+
+    /** The two factors of m without a and b. */
+    std::pair<double, double> parts_of_core_weight(const double t)
+    {
+      return {1. - smooth_step(t / core_gap), smooth_step(t / core_reach)};
+    }
+  } // namespace
+
+
+  CoreWeight::CoreWeight(const double cell)
+    : cell(cell)
+  {
+    if (cell == 0.)
+      return;
+    const QGauss<1>           rule(8); // exact: 12 degrees on either piece
+    SymmetricTensor<2, 2>     matrix;
+    Tensor<1, 2>              missing;
+    const std::pair<int, int> pieces[] = {{0, 1}, {1, 2}};
+    const double              ends[]   = {0., core_gap, core_reach};
+    for (const auto &[from, to] : pieces)
+      for (unsigned int k = 0; k < rule.size(); ++k)
+        {
+          const double t            = ends[from] + rule.point(k)[0] * (ends[to] - ends[from]);
+          const double weight       = rule.weight(k) * (ends[to] - ends[from]);
+          const auto [opens, falls] = parts_of_core_weight(t);
+          const Tensor<1, 2> powers({1., t});
+          matrix += weight * opens * falls * symmetrize(outer_product(powers, powers));
+          missing += weight * (1. - opens) * powers;
+        }
+    const Tensor<1, 2> solution = invert(matrix) * missing;
+    factors                     = {{solution[0], solution[1]}};
+  }
+
+
+  double CoreWeight::operator()(const double r) const
+  {
+    if (r >= core_reach * cell)
+      return 1.;
+    const double t            = r / cell;
+    const auto [opens, falls] = parts_of_core_weight(t);
+    return opens * (1. + (factors[0] + factors[1] * t) * falls);
+  }
+
+
+  FrontIntegral::FrontIntegral(const FrontPlace &at,
+                               const double      core,
+                               const double      cell,
+                               const Moduli     &moduli)
     : at(at)
     , core(core)
+    , in_core(cell)
     , moduli(moduli)
   {}
 
@@ -181,9 +235,13 @@ namespace PeriDeal
     const double heat   = frame[0] * point.thermal_slope;
     const double energy = 0.5 * (sigma * elastic);
     if (for_j)
-      sums[0] += point.weight * (ahead * (sigma * slope) - energy * slope[0] +
-                                 q * (c * (along * Tensor<2, 3>(sigma)[2] - energy) +
-                                      trace(sigma) * heat - b * ahead));
+      {
+        const double       m = in_core(r);
+        const Tensor<1, 3> slope_of_j({slope[0], slope[1], m * slope[2]});
+        sums[0] += point.weight * (ahead * (sigma * slope_of_j) - energy * slope[0] +
+                                   q * (m * c * (along * Tensor<2, 3>(sigma)[2] - energy) +
+                                        trace(sigma) * heat - b * ahead));
+      }
     for (unsigned int mode = 0; mode < 3; ++mode)
       {
         const auto [other, near] = near_field(mode, r, angle);

@@ -386,6 +386,9 @@ namespace PeriDeal
     const std::vector<CrackPiece<3>> pieces   = scene.cracks.pieces(time);
     const bool                       of_bonds = horizon > 0. && scene.elasticity.is_bond_based();
     const double                     core = std::max(2. * scene.domain.spacing().norm(), horizon);
+    double                           cell = 0.;
+    for (unsigned int d = 0; d < 3; ++d)
+      cell = std::max(cell, scene.domain.spacing()[d]);
     for (const CrackPiece<3> &piece : pieces)
       for (const FrontPlace &place : FrontRoom(scene, pieces, piece, horizon).places())
         {
@@ -395,7 +398,7 @@ namespace PeriDeal
                                  moduli.bulk,
                                  Modulus::poisson,
                                  bond_based_poisson(3, scene.elasticity.plane));
-          list.emplace_back(place, core, moduli);
+          list.emplace_back(place, core, cell, moduli);
         }
     return list;
   }

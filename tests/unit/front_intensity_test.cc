@@ -3,14 +3,18 @@
 
 // Integrals about places of crack fronts in three dimensions, with fields that are known.
 
+#include <perideal/analysis/bond_intensities.h>
 #include <perideal/analysis/front_intensity.h>
-
-#include <gtest/gtest.h>
+#include <perideal/analysis/tip_field.h>
 
 #include <cmath>
 #include <functional>
+#include <sstream>
+
+#include "elastic_test_tools.h"
 
 using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
 
 namespace
 {
@@ -105,7 +109,7 @@ namespace
   /** Of a field on cylinders about the front, the points of which are no corners of cells. */
   StressIntensity found(const FrontPlace &at, const Field &field, const bool loaded = false)
   {
-    FrontIntegral          integral(at, 0., moduli);
+    FrontIntegral          integral(at, 0., 0., moduli);
     constexpr unsigned int n_rings = 32, n_rays = 48, n_along = 16;
     const Tensor<1, 3>     along = cross_product_3d(at.ahead, at.normal);
     for (unsigned int k = 0; k < n_rings; ++k)
@@ -203,4 +207,155 @@ TEST(FrontIntensity, disc_under_tension_and_shear)
                   0.01)
         << part;
     }
+}
+
+
+namespace
+{
+  std::string text_of(const Tensor<1, 3> &v)
+  {
+    return std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " + std::to_string(v[2]);
+  }
+
+
+  /**
+   * The disc in a lattice, turned with its field, whose exact displacement is that of the nodes;
+   * its radius is that of 8.25 cells.
+   */
+  class DiscOnLattice
+  {
+  public:
+    /** @param axes of the disc: x, y and the normal z */
+    DiscOnLattice(const Tensor<2, 3> &axes, const std::string &cells, const Tensor<1, 3> &lower)
+      : axes(axes)
+      , body(Settings{{"Domain/Nodes", "cell centers"},
+                      {"Domain/Lower corner", text_of(spacing * lower)},
+                      {"Domain/Upper corner", text_of(spacing * upper_of(cells, lower))},
+                      {"Domain/Cells", cells},
+                      {"Material/Young modulus", std::to_string(young)},
+                      {"Material/Poisson ratio", std::to_string(poisson)},
+                      {"Peridynamics/Horizon ratio", "3"},
+                      {"Cracks/Polygons", "disc: 0, 0, 0, " + text_of(axes[2]) + ", 1"},
+                      {"Boundary conditions/Displacement", "left: 0, 0, 0"}},
+             ModelKind::peridynamics,
+             MPI_COMM_SELF)
+    {}
+
+    std::vector<StressIntensity> found(const double tension, const double shear) const
+    {
+      const auto u = [&](const unsigned int i, const unsigned int d) {
+        return (transpose(axes) *
+                disc(Point<3>(axes * Tensor<1, 3>(body.nodes->position(i))), tension, shear))[d];
+      };
+      return bond_intensities<3>(body.scene, body.states->bonds().families, u, false, 0., 0.);
+    }
+
+    /** From x to y along the front. */
+    double angle_of(const StressIntensity &values) const
+    {
+      const Tensor<1, 3> p = axes * Tensor<1, 3>(*values.place);
+      return std::atan2(p[1], p[0]);
+    }
+
+  private:
+    static constexpr double spacing = 1. / 8.25;
+
+    static Tensor<1, 3> upper_of(const std::string &cells, Tensor<1, 3> lower)
+    {
+      std::istringstream list(cells);
+      char               comma;
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          double n;
+          list >> n >> comma;
+          lower[d] += n;
+        }
+      return lower;
+    }
+
+    const Tensor<2, 3> axes;
+    const Body<3>      body;
+  };
+
+
+  constexpr double widest_ring = 0.736; // over the radius
+
+
+  /** Means of K_I, K_II, K_III and J about a place, with H of this half length. */
+  std::array<double, 4> means_of_disc(const double angle,
+                                      const double half,
+                                      const double tension,
+                                      const double shear)
+  {
+    const double root = std::sqrt(radius / pi), sheared = 4. * shear * root / (2. - poisson);
+    constexpr unsigned int n = 1000;
+    std::array<double, 4>  sums{};
+    double                 all = 0.;
+    for (unsigned int k = 0; k < n; ++k)
+      {
+        const double on = (2. * k + 1.) / n - 1., weight = smooth_step(std::abs(on));
+        const double turned = angle + half * on;
+        const double K[]    = {2. * tension * root,
+                               sheared * std::cos(turned),
+                               (1. - poisson) * sheared * std::sin(turned)};
+        for (unsigned int m = 0; m < 3; ++m)
+          sums[m] += weight * K[m];
+        sums[3] += weight * ((1. - poisson * poisson) / young * (K[0] * K[0] + K[1] * K[1]) +
+                             K[2] * K[2] / (2. * moduli.shear));
+        all += weight;
+      }
+    for (double &sum : sums)
+      sum /= all;
+    return sums;
+  }
+} // namespace
+
+
+TEST(FrontIntensity, disc_on_a_lattice)
+{
+  Tensor<2, 3> aligned, turned;
+  for (unsigned int d = 0; d < 3; ++d)
+    aligned[d][d] = 1.;
+  turned[0]        = Tensor<1, 3>({0.8, 0.36, -0.48});
+  turned[1]        = Tensor<1, 3>({0., 0.8, 0.6});
+  turned[2]        = cross_product_3d(turned[0], turned[1]);
+  const auto check = [](const DiscOnLattice &lattice,
+                        const double         tension,
+                        const double         shear,
+                        const unsigned int   n_places) {
+    const auto list = lattice.found(tension, shear);
+    EXPECT_EQ(list.size(), n_places);
+    for (const StressIntensity &values : list)
+      {
+        const auto mean = means_of_disc(lattice.angle_of(values), widest_ring, tension, shear);
+        EXPECT_NEAR(values.mode_1, mean[0], 0.02) << values.name;
+        EXPECT_NEAR(values.mode_2, mean[1], 0.02) << values.name;
+        EXPECT_NEAR(*values.mode_3, mean[2], 0.02) << values.name;
+        EXPECT_NEAR(std::sqrt(values.j / mean[3]), 1., 0.02) << values.name;
+      }
+  };
+  const DiscOnLattice along(aligned, "24, 24, 16", Tensor<1, 3>({-9., -9., -8.}));
+  check(along, 1., 0., 2);
+  check(along, 0., 1., 2);
+  check(DiscOnLattice(turned, "30, 30, 30", Tensor<1, 3>({-15.1, -14.8, -14.6})), 0.5, 1., 4);
+}
+
+
+TEST(FrontIntensity, weight_of_the_core)
+{
+  constexpr double       cell = 0.3;
+  constexpr unsigned int n    = 10000;
+  const CoreWeight       weight(cell), none(0.);
+  EXPECT_EQ(weight(0.), 0.);
+  EXPECT_EQ(none(0.), 1.);
+  EXPECT_EQ(weight(5. * cell), 1.);
+  double sums[2] = {0., 0.};
+  for (unsigned int k = 0; k < n; ++k)
+    {
+      const double r = 5. * cell * (k + 0.5) / n, missing = weight(r) - 1.;
+      sums[0] += missing / n;
+      sums[1] += missing * r / n;
+    }
+  EXPECT_NEAR(sums[0], 0., 1e-6);
+  EXPECT_NEAR(sums[1], 0., 1e-6);
 }

@@ -53,6 +53,30 @@ namespace PeriDeal
 
 
   /**
+   * A factor m(r) of densities that are singular at a front as 1/r is, where the fields within a
+   * cell from it are not to be trusted: f(r), the integral of such a density over the circle with
+   * the radius r, is nearly linear there, and
+   *
+   *   m = (1 - S(r/2h)) (1 + (a + b r/h) S(r/5h)),
+   *
+   * S as in FrontPlace, is 0 at the front, 1 from five cells h on, and integrates f as 1 does:
+   * int (m - 1) dr = int (m - 1) r dr = 0.
+   */
+  class CoreWeight
+  {
+  public:
+    /** @param cell h; 0: m = 1 */
+    explicit CoreWeight(const double cell);
+
+    double operator()(const double r) const;
+
+  private:
+    double                cell;
+    std::array<double, 2> factors{}; // a, b
+  };
+
+
+  /**
    * Domain integrals about a place of a front, with c = bend() and the rest as in CrackEndIntegral:
    *
    *   J share   = int (sigma_ij u_i,1 - W delta_1j) q,j + c (sigma_i3 u_i,3 - W) q
@@ -72,13 +96,19 @@ namespace PeriDeal
    * M = E/(2 (1 - nu^2)), for m = 3 the shear modulus. K_II is positive where the side to which the
    * normal points slides ahead, K_III where it slides along e_3.
    *
+   * What c and q,3 do to J comes from as far as the front, as much from every annulus: on lattices
+   * CoreWeight takes that of the cells next to the front from those around.
+   *
    * Give add() all points of this process; result() is collective.
    */
   class FrontIntegral
   {
   public:
-    /** @param core beside lips so near nothing crosses the plane (CrackEndIntegral) */
-    FrontIntegral(const FrontPlace &at, const double core, const Moduli &moduli);
+    /**
+     * @param core beside lips so near nothing crosses the plane (CrackEndIntegral)
+     * @param cell of CoreWeight
+     */
+    FrontIntegral(const FrontPlace &at, const double core, const double cell, const Moduli &moduli);
 
     /** Whether what lies at most so far from a point counts. */
     bool reaches(const dealii::Point<3> &p, const double radius) const;
@@ -113,6 +143,7 @@ namespace PeriDeal
 
     FrontPlace            at;
     double                core;
+    CoreWeight            in_core;
     Moduli                moduli;
     std::array<double, 4> sums{}; // J, K_I, K_II, K_III
   };
