@@ -74,16 +74,16 @@ namespace PeriDeal
   {
     if (cell == 0.)
       return;
-    const QGauss<1>           rule(8); // exact: 12 degrees on either piece
-    SymmetricTensor<2, 2>     matrix;
-    Tensor<1, 2>              missing;
-    const std::pair<int, int> pieces[] = {{0, 1}, {1, 2}};
-    const double              ends[]   = {0., core_gap, core_reach};
-    for (const auto &[from, to] : pieces)
+    const QGauss<1>       rule(8); // exact: 12 degrees on either piece
+    SymmetricTensor<2, 2> matrix;
+    Tensor<1, 2>          missing;
+    const double          ends[] = {0., core_gap, core_reach};
+    for (unsigned int piece = 0; piece < 2; ++piece)
       for (unsigned int k = 0; k < rule.size(); ++k)
         {
-          const double t            = ends[from] + rule.point(k)[0] * (ends[to] - ends[from]);
-          const double weight       = rule.weight(k) * (ends[to] - ends[from]);
+          const double length       = ends[piece + 1] - ends[piece];
+          const double t            = ends[piece] + rule.point(k)[0] * length;
+          const double weight       = rule.weight(k) * length;
           const auto [opens, falls] = parts_of_core_weight(t);
           const Tensor<1, 2> powers({1., t});
           matrix += weight * opens * falls * symmetrize(outer_product(powers, powers));

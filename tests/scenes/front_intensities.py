@@ -34,7 +34,7 @@ end
 
 
 # Of K_I, K_II, K_III and the intensity of J, over the whole intensity.
-DISC_BOUNDS = (0.03, 0.03, 0.03, 0.05)
+DISC_BOUNDS = (0.03, 0.03, 0.03, 0.03)
 THROUGH_BOUNDS = (0.02, 0.02, 0.02, 0.02)
 
 
@@ -91,7 +91,7 @@ def disc():
     result = Comparison("Disc, peridynamics")
     check(compare(runs[0], PD, crack, DISC_BOUNDS, "cell centers, m = 3", result) == 4, "four places")
     same_on(*runs, PD)
-    # A quarter of it, without shear: places on planes of symmetry, with half of a ring. Measured: K_I at most 8.9e-3, J 2.2e-2.
+    # A quarter of it, without shear: places on planes of symmetry, with half of a ring. Measured: K_I at most 4.6e-3, J 1.5e-2.
     pulled = Disc(0.2, 0.55, 1, 0)
     held = " ; ".join(side for side in pulled.entries()["Boundary conditions/Displacement"].split(" ; ") if side.split(":")[0] not in ("left", "bottom"))
     for models, cells in ((PD, "15, 15, 30"), (f"{FE}, {COUPLED}", "15, 15, 31")):
@@ -103,9 +103,10 @@ def disc():
 
 
 def thin(crack, nodes, cells, models, more=None, ranks=1):
-    """Plane strain in a thin plate, whose front goes from side to side."""
+    """Plane strain in a thin plate, whose front goes from side to side; a layer of two rows would hold all of its thickness."""
     return run_scene(SCENE, {**crack.entries(slides=True), **body(cells, nodes, 3, models), "Domain/Lower corner": "-1, -1, 0", "Domain/Upper corner": "1, 1, 0.2",
-                             "Domain/Cells": f"{cells}, {cells}, 3", "Cracks/Polygons": crack.polygon(0, 0.2), "Solver/Tolerance": "1e-10", **(more or {})}, ranks=ranks)
+                             "Domain/Cells": f"{cells}, {cells}, 3", "Cracks/Polygons": crack.polygon(0, 0.2), "Boundary conditions/Displacement layer": "",
+                             "Solver/Tolerance": "1e-10", **(more or {})}, ranks=ranks)
 
 
 def through():
