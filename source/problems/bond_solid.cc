@@ -248,8 +248,9 @@ namespace PeriDeal
         const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
         const unsigned long long n  = states->bonds().rows.n_uncorrected;
         std::vector<std::string> list;
-        if (const std::string note = note_on_cut_sides(scene); !note.empty())
-          list.push_back(note);
+        for (const std::string &note : {note_on_cut_sides(scene), note_on_held_rows(scene)})
+          if (!note.empty())
+            list.push_back(note);
         if (dim > 1 && scene.elasticity.model == ElasticModel::bond_based &&
             scene.elasticity.micromodulus == Micromodulus::family)
           list.push_back(

@@ -144,6 +144,30 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::string note_on_held_rows(const BodyParameters<dim> &body)
+  {
+    const auto              &conditions = body.boundary_conditions;
+    const auto               beyond     = beyond_sides(body);
+    std::vector<std::string> names;
+    for (const VectorCondition &condition : conditions.displacement)
+      if (const types::boundary_id side = conditions.side_of(condition.id);
+          side < 2 * dim && beyond[side] == BeyondSide::continued)
+        names.push_back("'" + conditions.name_of(condition.id) + "'");
+    if (names.empty() || !body.domain.has_nodes_at_centers())
+      return {};
+    const Tensor<1, dim> spacing = body.domain.spacing();
+    if (conditions.displacement_layer >
+        1.999 * *std::max_element(spacing.begin_raw(), spacing.end_raw()))
+      return {};
+    return "With nodes at cell centers a displacement holds the outermost row of nodes at " +
+           join_names(names) +
+           ", half a cell inside, and of the forces beyond the side some act on the row behind it, which is free. "
+           "The body is too stiff by that, as if it were 0.6 to 0.8 cells shorter at each of these sides. 'Nodes = vertices' (section 'Domain') "
+           "lie on the sides; with a 'Displacement layer' of two cells (section 'Boundary conditions'), each node at the value of the formula at its own place, linear displacements are exact.";
+  }
+
+
+  template <int dim>
   std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body)
   {
     std::array<BeyondSide, 2 * dim> beyond;
@@ -213,6 +237,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template std::string                     note_on_held_rows(const BodyParameters<dim> &body);  \
   template std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);       \
   template bool                            completes_mesh(const BodyParameters<dim> &body);     \
   template bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side); \

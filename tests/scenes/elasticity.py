@@ -306,6 +306,10 @@ def notes():
     check(any("Poisson ratio" in note and "0.333" in note and "0.3:" in note for note in run.summary["notes"]), f"no note on Poisson's ratio: {run.summary['notes']}")
     run = run_quietly("bar_2d.prm", {**bonds, "Material/Poisson ratio": "1/3"})
     check(not any("Poisson ratio" in note for note in run.summary["notes"]), f"a note on the right Poisson's ratio: {run.summary['notes']}")
+    held = {"Boundary conditions/Symmetry": "bottom", "Boundary conditions/Displacement": "left: 0, free", "Domain/Nodes": "cell centers"}
+    for more, told in (({}, True), ({"Domain/Nodes": "vertices"}, False), ({"Boundary conditions/Displacement layer": "0.05"}, False)):
+        run = run_quietly("bar_2d.prm", {**held, **more})
+        check(any("outermost row" in note and "'left'" in note for note in run.summary["notes"]) == told, f"{more}: {run.summary['notes']}")
     run = run_scene("prm/elasticity/bar_2d.prm", {**QUIET, "Peridynamics/Calibration": "analytic"}, expect_error=True)
     check_message(run, "Calibration", "Leave the entry out")
     run = run_scene("prm/elasticity/bar_2d.prm", {**QUIET, "Solver/Maximum iterations": "3"}, expect_error=True)
