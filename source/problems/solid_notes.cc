@@ -193,7 +193,9 @@ namespace PeriDeal
       context.record.notes.push_back(
         run.name() + ": " + readable_count(n) +
         " cells are stretched beyond the critical stretch, the worst at " + place +
-        ", and have no bonds that could break: what breaks ends there. " +
+        (run.scene.coupling.exchanges() ?
+           ", and have no bonds that could break: what breaks ends there. " :
+           ", where elements still hold together what bonds would part: what breaks ends there. ") +
         (run.scene.coupling.follows_stretches() ?
            "Keep cells of lattice size there: 'Fine where' or a smaller 'Coarsening' in section 'Domain'." :
            "'Zone = follow' in section 'Coupling' goes with it."));

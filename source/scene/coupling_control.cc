@@ -25,7 +25,7 @@ namespace PeriDeal
       "",
       "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; or a formula of "
       "x, y, z, in the zone where it is greater than 0. `adaptive`: as `cracks: 1`, on a mesh that follows the cracks and the solution as the run goes "
-      "on (`Coarsening` in section `Domain` says how large its cells may be). `follow`, with elasticity and bonds that break: one horizon around cracks, broken bonds, "
+      "on (`Coarsening` in section `Domain` says how large its cells may be). `follow`, with elasticity and bonds that break: one horizon (with `blending` two) around cracks, broken bonds, "
       "and wherever the body is stretched by more than `Zone share` of the critical stretch. `auto` is that where bonds may break, else `cracks: 1`.");
     declare(
       "Zone share",
@@ -64,8 +64,10 @@ namespace PeriDeal
     certificate        = boolean("Certificate");
     adaptive_tolerance = positive_number("Adaptive tolerance");
     parse_zone();
-    if (bonds_break && exchanges() && text("Zone") == "auto")
+    if (bonds_break && !splices() && text("Zone") == "auto")
       zone = ZoneKind::follow;
+    if (follows_stretches() && !exchanges())
+      width = 2.; // of a bond, and of the families at its ends
     if (is_given("Adaptive tolerance") && !is_adaptive())
       error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + zone_text() + "'.");
     zone_share = positive_number("Zone share");

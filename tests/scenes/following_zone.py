@@ -156,7 +156,7 @@ def mistakes():
     """Zones in which bonds cannot break."""
     for settings, words in (
             ({"Coupling/Zone": "cracks: 0.5"}, ("'Zone' in section 'Coupling'", "less than one horizon", "'follow'")),
-            ({"Coupling/Zone": "cracks: 1", "Coupling/Scheme": "blending"}, ("'Scheme' in section 'Coupling'", "do not break", "'exchange'")),
+            ({"Coupling/Zone": "cracks: 1", "Coupling/Scheme": "splice"}, ("'Scheme' in section 'Coupling'", "without an energy", "'exchange'")),
             ({"Coupling/Zone": "folow"}, ("'Zone' in section 'Coupling'", "did you mean 'follow'")),
             ({"Coupling/Zone share": "1"}, ("'Zone share' in section 'Coupling'", "at most 0.9")),
             ({"Coupling/Zone": "everywhere", "Coupling/Zone share": "0.4"}, ("'Zone share'", "'Zone = follow'")),

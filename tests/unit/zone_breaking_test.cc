@@ -49,44 +49,6 @@ namespace
   }
 
 
-  /** About a fifth, as if at random. */
-  template <int dim>
-  bool is_chosen(const Point<dim> &a, const Point<dim> &b)
-  {
-    double phase = 0.;
-    for (unsigned int d = 0; d < dim; ++d)
-      phase += (91.7 + 37. * d) * (a[d] + b[d]) + (13.1 + 7. * d) * std::abs(a[d] - b[d]);
-    return phase * 13.37 - std::floor(phase * 13.37) < 0.2;
-  }
-
-
-  /** Of K: asymmetry, force and moment on rigid motions, lowest energy of some fields. */
-  template <int dim>
-  void check_sound(const Body<dim> &body)
-  {
-    const Vector x = body.values(bumpy_vector<dim>);
-    Vector       z = body.values([](const Point<dim> &p) {
-      Tensor<1, dim> value;
-      for (unsigned int d = 0; d < dim; ++d)
-        value[d] = std::cos(17. * p[d] * (1. + p[0]) + d) + p.norm();
-      return value;
-    });
-    Vector       y(x), w(x);
-    body.elements->multiply(y, x);
-    body.elements->multiply(w, z);
-    const double size = std::sqrt((x * y) * (z * w));
-    EXPECT_LT(std::abs(z * y - x * w), 1e-13 * size);
-    EXPECT_GE(x * y, 0.);
-    for (const Vector &motion : body.elements->near_null_space())
-      {
-        EXPECT_LT(std::abs(motion * y), 1e-13 * motion.linfty_norm() * y.l1_norm());
-        body.elements->multiply(w, motion);
-        EXPECT_LT(w.linfty_norm(), 1e-12 * motion.linfty_norm() * y.linfty_norm());
-      }
-    EXPECT_GT(body.elements->lowest_remainder(), -1e-12);
-  }
-
-
   template <int dim>
   void check_a_fifth_broken(const std::string &zone, const double nu)
   {

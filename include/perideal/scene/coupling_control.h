@@ -46,7 +46,7 @@ namespace PeriDeal
     /**
      * Throws UserError for a zone that is none, a width or an overlap below 0, contradicting
      * entries.
-     * @param bonds_break of a solid: an exchange then has the zone `follow` unless it is given one
+     * @param bonds_break of a solid: the zone is then `follow` unless one is given, but for splice
      */
     void parse(const bool bonds_break = false);
 

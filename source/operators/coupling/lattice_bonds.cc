@@ -285,7 +285,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::mark_broken(const unsigned int a, const unsigned int b)
+  std::size_t LatticeBonds<dim>::number_between(const unsigned int a, const unsigned int b) const
   {
     const Site at_a = site_of(a), at_b = site_of(b);
     Site       forth{}, back{};
@@ -294,11 +294,28 @@ namespace PeriDeal
         forth[d] = at_b[d] - at_a[d];
         back[d]  = -forth[d];
       }
-    if (broken.empty())
-      broken.resize(sites.size() * offsets.size());
     for (const Offset &offset : offsets)
       if (offset.site == forth || offset.site == back)
-        broken[number_of(*at(offset.site == forth ? at_a : at_b), offset)] = true;
+        return number_of(*at(offset.site == forth ? at_a : at_b), offset);
+    return std::numeric_limits<std::size_t>::max();
+  }
+
+
+  template <int dim>
+  void LatticeBonds<dim>::mark_broken(const unsigned int a, const unsigned int b)
+  {
+    if (broken.empty())
+      broken.resize(sites.size() * offsets.size());
+    if (const std::size_t number = number_between(a, b); number < broken.size())
+      broken[number] = true;
+  }
+
+
+  template <int dim>
+  bool LatticeBonds<dim>::is_broken(const unsigned int a, const unsigned int b) const
+  {
+    const std::size_t number = any_broken() ? number_between(a, b) : broken.size();
+    return number < broken.size() && broken[number];
   }
 
 
@@ -316,14 +333,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::find_joining(const Point<dim>          &place,
-                                       const double               distance,
-                                       std::vector<unsigned int> &list) const
+  void LatticeBonds<dim>::find_joining(const Point<dim> &place, std::vector<Joining> &list) const
   {
     if (sites.empty())
       return;
     const Lattice<dim> &lattice = *families.nodes().lattice();
-    const double        within  = distance * (1. + 1e-9);
+    const double        within  = families.weights().horizon() * (1. + 1e-9);
     Site                first, last;
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -335,16 +350,16 @@ namespace PeriDeal
     for_each_site(first, last, [&](const Site &site) {
       const SiteData &data = *at(site);
       if (data.may_join && !data.in_zone && lattice.position(site).distance(place) <= within)
-        list.push_back(data.node);
+        list.push_back({data.node, 1.});
     });
   }
 
 
   template <int dim>
-  void LatticeBonds<dim>::join_nodes(const std::vector<unsigned int> &list)
+  void LatticeBonds<dim>::join_nodes(const std::vector<Joining> &list)
   {
-    for (const unsigned int node : list)
-      own(site_of(node)).in_zone = true;
+    for (const Joining &joining : list)
+      own(site_of(joining.node)).in_zone = true;
   }
 
 

@@ -65,6 +65,11 @@ namespace PeriDeal
         throw_if_narrow(own_families);
         extension.emplace(own_families, beyond_sides(body));
       }
+    if (body.material.fracture_energy || body.material.critical_stretch)
+      breaks.emplace(own_families,
+                     weights_now,
+                     body.coupling.width * own_families.weights().horizon(),
+                     this->overlap);
     find_nodes_that_act();
     laws.resize(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -398,7 +403,8 @@ namespace PeriDeal
   template <int dim>
   std::size_t StateCoupling<dim>::memory_of_bonds() const
   {
-    return laws.capacity() * sizeof(StateLaw) + acts.capacity() / 8;
+    return laws.capacity() * sizeof(StateLaw) + acts.capacity() / 8 +
+           (breaks ? breaks->memory_consumption() : 0);
   }
 
 

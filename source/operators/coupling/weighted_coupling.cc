@@ -30,7 +30,8 @@ namespace PeriDeal
     weights_at_end.set(at_end);
     this->zone.set_cracks(history.pieces(history.representative(0.)));
     weights_now.set(follows ? this->zone : at_end);
-    throw_if_zone_empty(weights_at_end.n_owned_in_zone(), nodes.communicator());
+    if (!zone.follows_stretches()) // else nodes may join anywhere
+      throw_if_zone_empty(weights_at_end.n_owned_in_zone(), nodes.communicator());
   }
 
 
@@ -92,7 +93,7 @@ namespace PeriDeal
         if (std::any_of(changes.begin(),
                         changes.end(),
                         [&](const auto &box) { return box.point_inside(p); }) &&
-            then.weight(p, overlap) != weights_now[i])
+            then.weight(p, overlap) > weights_now[i])
           boxes.push_back({{p, p}});
       }
     return boxes;

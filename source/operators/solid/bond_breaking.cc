@@ -4,17 +4,14 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/point_order.h>
-#include <perideal/base/user_error.h>
 #include <perideal/operators/solid/bond_breaking.h>
-#include <perideal/operators/solid/weibull_field.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
 
-#include "crossing_sums.h"
-#include "stretch_fault.h"
+#include "critical_stretches.h"
 
 namespace PeriDeal
 {
@@ -61,42 +58,11 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::find_critical_stretches()
   {
-    const Material    &material   = body.material;
-    const Nodes<dim>  &nodes      = bonds.families.nodes();
-    const bool         converts   = !material.critical_stretch;
-    const CrossingSums of_lattice = converts && nodes.lattice() ? crossing_sums(bonds.families) :
-                                                                  CrossingSums();
-    std::vector<typename Families<dim>::Member> family;
-    std::string                                 message;
-    Vector                                      stretches(nodes.partitioner());
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        const Point<dim> &p   = nodes.position(i);
-        const StateLaw   &law = bonds.laws[i];
-        double           &s   = stretches.local_element(i);
-        if (converts)
-          {
-            const CrossingSums sums =
-              nodes.lattice() ? of_lattice : own_crossing_sums(bonds.families, i, family);
-            s = std::sqrt(
-              material.fracture_energy->value(p) /
-              (law.extension * sums.bonds +
-               (bonds.laws.volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.)));
-          }
-        else
-          s = material.critical_stretch->value(p);
-        if (message.empty() && !(s > 0.))
-          message = stretch_fault(!converts, p);
-      }
-    throw_on_all_if_any(nodes.communicator(), message);
-    if (material.scatter)
-      {
-        const WeibullField<dim> field(nodes, material.scatter->modulus, material.scatter->seed);
-        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-          stretches.local_element(i) *= field.factor(nodes.position(i));
-      }
-    stretches.update_ghost_values();
-    critical.assign(stretches.begin(), stretches.begin() + nodes.n_local());
+    critical = critical_stretches_of_families(
+      bonds.families,
+      body,
+      [&](const unsigned int i) -> const StateLaw & { return bonds.laws[i]; },
+      bonds.laws.volumetric);
   }
 
 

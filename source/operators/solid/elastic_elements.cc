@@ -311,18 +311,18 @@ namespace PeriDeal
     const Vector held    = this->held_unknowns();
     const double largest = stiffness_diagonal.linfty_norm();
     for (const unsigned int i : touched)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          double value = stiffness.diagonal(i, d);
-          breaking->bonds.for_each(i, [&](const auto &bond, const Tensor<1, dim> &xi) {
-            value += bond.strength * xi[d] * xi[d];
-          });
-          const bool stands                             = value > 1e-13 * largest;
-          stiffness_diagonal.local_element(dim * i + d) = held.local_element(dim * i + d) > 0. ?
-                                                            1. :
-                                                          stands ? value :
-                                                                   largest;
-        }
+      {
+        const Tensor<1, dim> of_bonds = breaking->bonds.diagonal_of(i);
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double value                            = stiffness.diagonal(i, d) + of_bonds[d];
+            const bool   stands                           = value > 1e-13 * largest;
+            stiffness_diagonal.local_element(dim * i + d) = held.local_element(dim * i + d) > 0. ?
+                                                              1. :
+                                                            stands ? value :
+                                                                     largest;
+          }
+      }
   }
 
 
@@ -330,10 +330,10 @@ namespace PeriDeal
   bool ElasticElements<dim>::join_zone_around(const std::vector<Point<dim>> &places,
                                               const Vector                  &u)
   {
-    const std::vector<unsigned int> joining = breaking->joining(places);
-    Boxes                           boxes;
-    for (const unsigned int i : joining)
-      boxes.emplace_back(std::vector<Point<dim>>{positions[i], positions[i]});
+    const auto joining = breaking->joining(places);
+    Boxes      boxes;
+    for (const auto &[node, weight] : joining)
+      boxes.emplace_back(std::vector<Point<dim>>{positions[node], positions[node]});
     if (Utilities::MPI::sum(static_cast<double>(joining.size()), dofs.get_communicator()) == 0.)
       return false;
     const std::vector<unsigned int> rows = zone_bonds->nodes_near(boxes);
@@ -371,7 +371,7 @@ namespace PeriDeal
   {
     u.update_ghost_values();
     breaking->history.released +=
-      mend_zone(breaking->parted_by(pairs), 0., breaking->owned_ends(pairs), u, [&] {
+      mend_zone(breaking->parted_by(pairs), 0., breaking->rows_of(pairs), u, [&] {
         breaking->take(pairs, t);
       });
     if (const auto places = breaking->find_places_to_join(u); !places.empty())

@@ -3,28 +3,29 @@
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <perideal/operators/solid/zone_bonds.h>
+#include <perideal/mesh/lattice_sites.h>
+#include <perideal/operators/solid/family_bonds.h>
+#include <perideal/operators/solid/pair_bonds.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "change_along.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
 
   template <int dim>
-  ZoneBonds<dim>::ZoneBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds)
-    : coupling(coupling)
-    , of_lattice(bonds)
-    , reach(bonds.reach)
-    , rows(bonds.families.nodes().n_owned())
+  ZoneBonds<dim>::ZoneBonds(const Families<dim> &bonds_of_zone)
+    : families(bonds_of_zone)
+    , rows(families.nodes().n_owned())
   {
-    typename LatticeBonds<dim>::Site first = reach;
+    for (const FamilyMember<dim> &member : families.weights().members())
+      for (unsigned int d = 0; d < dim; ++d)
+        reach[d] = std::max(reach[d], std::abs(member.offset[d]));
+    std::array<int, dim> first = reach;
     for (int &x : first)
       x = -x;
-    const Tensor<1, dim> &spacing = bonds.families.nodes().lattice()->spacing;
+    const Tensor<1, dim> &spacing = families.nodes().lattice()->spacing;
     for_each_site(first, reach, [&](const auto &site) {
       Tensor<1, dim> xi;
       bool           is_short = true;
@@ -43,7 +44,7 @@ namespace PeriDeal
   unsigned int ZoneBonds<dim>::vector_between(const unsigned int node,
                                               const unsigned int neighbor) const
   {
-    const Nodes<dim> &nodes = of_lattice.families.nodes();
+    const Nodes<dim> &nodes = families.nodes();
     const auto        from  = nodes.lattice()->index(nodes.position(node)),
                to           = nodes.lattice()->index(nodes.position(neighbor));
     unsigned int key        = 0;
@@ -54,29 +55,28 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ZoneBonds<dim>::set_rows(const std::vector<unsigned int> &of_nodes,
-                                const CrackSideFactors          &factors)
+  void ZoneBonds<dim>::set_row(const unsigned int                                     node,
+                               const std::vector<typename DiffusionBonds<dim>::Bond> &list)
   {
-    std::vector<typename Coupling<dim>::Bond> list;
-    bool                                      more = false;
-    for (const unsigned int i : of_nodes)
-      {
-        coupling.bonds_of(i, list);
-        Row &row = rows[i];
-        more     = more || (row.n == 0) != list.empty();
-        unused += row.n;
-        row = {bonds.size(), static_cast<unsigned int>(list.size())};
-        for (const auto &bond : list)
-          bonds.push_back({bond.neighbor,
-                           vector_between(i, bond.neighbor),
-                           bond.weight * factors.of_bond(i, bond.neighbor)});
-      }
+    Row &row = rows[node];
+    more     = more || (row.n == 0) != list.empty();
+    unused += row.n;
+    row = {bonds.size(), static_cast<unsigned int>(list.size())};
+    for (const auto &bond : list)
+      bonds.push_back({bond.neighbor, vector_between(node, bond.neighbor), bond.weight});
+  }
+
+
+  template <int dim>
+  void ZoneBonds<dim>::finish_rows()
+  {
     if (more)
       {
         with_rows.clear();
         for (unsigned int i = 0; i < rows.size(); ++i)
           if (rows[i].n > 0)
             with_rows.push_back(i);
+        more = false;
       }
     if (unused > bonds.size() / 2)
       pack();
@@ -110,112 +110,36 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ZoneBonds<dim>::add_forces(Vector &y, const Vector &u) const
-  {
-    add_forces_of(with_rows, 1., y, u);
-  }
-
-
-  template <int dim>
-  void ZoneBonds<dim>::add_forces_of(const std::vector<unsigned int> &of_nodes,
-                                     const double                     multiple,
-                                     Vector                          &y,
-                                     const Vector                    &u) const
-  {
-    const double *const all = u.begin();
-    for (const unsigned int i : of_nodes)
-      {
-        Tensor<1, dim> sum;
-        const Row     &row = rows[i];
-        for (std::size_t k = row.first; k < row.first + row.n; ++k)
-          {
-            const Tensor<1, dim> &xi = vectors[bonds[k].vector];
-            sum += bonds[k].strength * change_along<dim>(xi, all, i, bonds[k].neighbor) * xi;
-          }
-        for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * i + d) -= multiple * sum[d];
-      }
-  }
-
-
-  template <int dim>
   void ZoneBonds<dim>::add_diagonal(Vector &diagonal) const
   {
     for (const unsigned int i : with_rows)
-      for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
+      {
+        const Tensor<1, dim> own = diagonal_of(i);
         for (unsigned int d = 0; d < dim; ++d)
-          diagonal.local_element(dim * i + d) += bond.strength * xi[d] * xi[d];
-      });
-  }
-
-
-  template <int dim>
-  void ZoneBonds<dim>::add_row_sums(std::vector<double> &sums) const
-  {
-    for (const unsigned int i : with_rows)
-      for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-        double length = 0.;
-        for (unsigned int d = 0; d < dim; ++d)
-          length += std::abs(xi[d]);
-        for (unsigned int d = 0; d < dim; ++d)
-          sums[dim * i + d] += 2. * bond.strength * std::abs(xi[d]) * length;
-      });
+          diagonal.local_element(dim * i + d) += own[d];
+      }
   }
 
 
   template <int dim>
   void ZoneBonds<dim>::add_between_vertices(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    const auto &layout = *of_lattice.families.nodes().partitioner();
+    const auto &layout = *families.nodes().partitioner();
     for (const unsigned int i : with_rows)
       for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
         if (bond.strength == 0. || !is_between_vertices[bond.vector])
           return;
-        const auto own   = dim * layout.local_to_global(i),
-                   other = dim * layout.local_to_global(bond.neighbor);
+        const double factor = spring(i, bond);
+        const auto   own    = dim * layout.local_to_global(i),
+                   other    = dim * layout.local_to_global(bond.neighbor);
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int e = 0; e < dim; ++e)
             {
-              const double value = bond.strength * xi[c] * xi[e];
+              const double value = factor * xi[c] * xi[e];
               matrix.add(own + c, own + e, value);
               matrix.add(own + c, other + e, -value);
             }
       });
-  }
-
-
-  template <int dim>
-  double ZoneBonds<dim>::energy(const Vector                    &u,
-                                const std::vector<unsigned int> &of_nodes,
-                                const std::vector<double>       &thermal) const
-  {
-    double sum = 0.;
-    for (const unsigned int i : of_nodes)
-      for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-        double change = change_along<dim>(xi, u.begin(), i, bond.neighbor);
-        if (!thermal.empty())
-          change -= 0.5 * (thermal[i] + thermal[bond.neighbor]) * xi.norm_square();
-        sum += 0.25 * bond.strength * change * change;
-      });
-    return sum;
-  }
-
-
-  template <int dim>
-  double ZoneBonds<dim>::add_thermal(Vector                          &loads,
-                                     const std::vector<unsigned int> &of_nodes,
-                                     const std::vector<double>       &thermal,
-                                     const double                     multiple) const
-  {
-    double held = 0.;
-    for (const unsigned int i : of_nodes)
-      for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-        const double mean = 0.5 * (thermal[i] + thermal[bond.neighbor]), square = xi.norm_square();
-        for (unsigned int d = 0; d < dim; ++d)
-          loads.local_element(dim * i + d) -= multiple * bond.strength * mean * square * xi[d];
-        held += 0.25 * multiple * bond.strength * std::pow(mean * square, 2);
-      });
-    return held;
   }
 
 
@@ -238,7 +162,22 @@ namespace PeriDeal
   }
 
 
-  template class ZoneBonds<1>;
-  template class ZoneBonds<2>;
-  template class ZoneBonds<3>;
+  template <int dim>
+  std::unique_ptr<ZoneBonds<dim>> make_zone_bonds(Coupling<dim>             &coupling,
+                                                  const BodyParameters<dim> &body)
+  {
+    if (const auto *lattice = dynamic_cast<const LatticeBonds<dim> *>(coupling.breakable()))
+      return std::make_unique<PairBonds<dim>>(coupling, *lattice);
+    return std::make_unique<FamilyBonds<dim>>(coupling, body);
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                           \
+  template class ZoneBonds<dim>;                                            \
+  template std::unique_ptr<ZoneBonds<dim>> make_zone_bonds(Coupling<dim> &, \
+                                                           const BodyParameters<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

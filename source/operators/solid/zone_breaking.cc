@@ -35,13 +35,13 @@ namespace PeriDeal
   ZoneBreaking<dim>::ZoneBreaking(Coupling<dim>             &coupling,
                                   const DoFHandler<dim>     &dofs,
                                   const BodyParameters<dim> &body)
-    : bonds(coupling, *coupling.breakable())
-    , of_lattice(*coupling.breakable())
-    , nodes(of_lattice.families.nodes())
-    , horizon(body.horizon())
+    : own_bonds(make_zone_bonds(coupling, body))
+    , bonds(*own_bonds)
+    , zone(*coupling.breakable())
+    , nodes(zone.families_of_bonds().nodes())
     , share_of_zone(body.coupling.follows_stretches() ? body.coupling.zone_share : 0.)
+    , critical(bonds.critical_stretches(body))
   {
-    find_critical_stretches(body);
     if (share_of_zone > 0.)
       find_cells(dofs);
   }
@@ -84,7 +84,7 @@ namespace PeriDeal
     std::vector<std::pair<NodePair, double>> found; // stretch over the critical one
     double                                   most = 0.;
     visit_stretches(u, [&](const auto i, const auto j, const double stretch, const double limit) {
-      if (!(stretch > limit))
+      if (!(stretch > limit) || !zone.may_break(i, j))
         return;
       NodePair pair{layout.local_to_global(i), layout.local_to_global(j)};
       std::sort(pair.begin(), pair.end());
@@ -111,8 +111,8 @@ namespace PeriDeal
   {
     double most = 0.;
     u.update_ghost_values();
-    visit_stretches(u, [&](auto, auto, const double stretch, const double limit) {
-      if (stretch > most * limit)
+    visit_stretches(u, [&](const auto i, const auto j, const double stretch, const double limit) {
+      if (stretch > most * limit && zone.may_break(i, j))
         most = stretch / limit;
     });
     if (share_of_zone > 0.)
@@ -174,16 +174,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<unsigned int> ZoneBreaking<dim>::owned_ends(const std::vector<NodePair> &pairs) const
+  std::vector<unsigned int> ZoneBreaking<dim>::rows_of(const std::vector<NodePair> &pairs) const
   {
     std::vector<unsigned int> ends;
     for (const NodePair &pair : pairs)
       for (const auto node : pair)
-        if (nodes.partitioner()->in_local_range(node))
-          ends.push_back(nodes.partitioner()->global_to_local(node));
+        if (const auto end = known(node))
+          ends.push_back(*end);
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    return ends;
+    return bonds.rows_at(ends);
   }
 
 
@@ -197,7 +197,7 @@ namespace PeriDeal
         const auto a = known(pair[0]), b = known(pair[1]);
         if (!a || !b)
           continue;
-        of_lattice.mark_broken(*a, *b);
+        zone.mark_broken(*a, *b);
         if (*a < nodes.n_owned())
           bonds.release(*a, *b);
         if (*b < nodes.n_owned())
@@ -278,7 +278,7 @@ namespace PeriDeal
           for (const unsigned int v : cell->vertex_indices())
             {
               corners[v] = nodes.partitioner()->global_to_local(cell->vertex_dof_index(v, 0));
-              inside     = inside && of_lattice.in_zone(corners[v]);
+              inside     = inside && zone.is_free(corners[v]);
             }
           if (inside)
             continue;
@@ -301,13 +301,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<unsigned int> ZoneBreaking<dim>::joining(const std::vector<Point<dim>> &places) const
+  std::vector<typename ZoneBreaking<dim>::Joining> ZoneBreaking<dim>::joining(
+    const std::vector<Point<dim>> &places) const
   {
-    std::vector<unsigned int> list;
+    std::vector<Joining> list;
     for (const Point<dim> &place : places)
-      of_lattice.find_joining(place, horizon, list);
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+      zone.find_joining(place, list);
+    // Of each node the largest weight.
+    std::sort(list.begin(), list.end(), [](const Joining &a, const Joining &b) {
+      return a.node != b.node ? a.node < b.node : a.weight > b.weight;
+    });
+    list.erase(std::unique(list.begin(),
+                           list.end(),
+                           [](const Joining &a, const Joining &b) { return a.node == b.node; }),
+               list.end());
     return list;
   }
 
@@ -325,7 +332,7 @@ namespace PeriDeal
         });
         if (lost == 0.)
           continue;
-        of_lattice.families.members_of(i, family);
+        zone.families_of_bonds().members_of(i, family);
         for (const auto &member : family)
           all += nodes.volume(member.neighbor);
         result[i] = lost / all;
@@ -350,7 +357,7 @@ namespace PeriDeal
   {
     kept_zone.resize(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      kept_zone[i] = of_lattice.in_zone(i);
+      kept_zone[i] = zone.weight_of(i);
   }
 
 
@@ -365,11 +372,14 @@ namespace PeriDeal
     history.exchange(archive);
     unsigned long long n_kept = n_first;
     archive.exchange("broken at first", n_kept);
-    Vector zone(nodes.partitioner());
+    Vector now(nodes.partitioner()), at_first_zone(now);
     for (unsigned int i = 0; i < nodes.n_owned() && !archive.loads(); ++i)
-      zone.local_element(i) =
-        (of_lattice.in_zone(i) ? 1. : 0.) + (!kept_zone.empty() && kept_zone[i] ? 1. : 0.);
-    archive.exchange("zone", zone, keys);
+      {
+        now.local_element(i)           = zone.weight_of(i);
+        at_first_zone.local_element(i) = kept_zone.empty() ? 0. : kept_zone[i];
+      }
+    archive.exchange("zone", now, keys);
+    archive.exchange("zone at first", at_first_zone, keys);
 
     std::vector<typename Families<dim>::Member> family;
     KeyedPairs                                  pairs;
@@ -377,7 +387,7 @@ namespace PeriDeal
       if (nodes.partitioner()->in_local_range(broken[k].pair[0]))
         {
           const unsigned int a = *known(broken[k].pair[0]), b = *known(broken[k].pair[1]);
-          of_lattice.families.members_of(a, family);
+          zone.families_of_bonds().members_of(a, family);
           std::uint64_t place = 0;
           while (family[place].neighbor != b)
             ++place;
@@ -396,7 +406,7 @@ namespace PeriDeal
     for (std::size_t k = 0; k < pairs.keys.size(); ++k)
       {
         const unsigned int a = node_of.at(pairs.keys[k][0]);
-        of_lattice.families.members_of(a, family);
+        zone.families_of_bonds().members_of(a, family);
         NodePair pair{nodes.partitioner()->local_to_global(a),
                       nodes.partitioner()->local_to_global(family[pairs.keys[k][1]].neighbor)};
         std::sort(pair.begin(), pair.end());
@@ -407,7 +417,8 @@ namespace PeriDeal
       }
     std::vector<Numbered> all = gather(own, nodes.communicator());
     std::sort(all.begin(), all.end());
-    zone.update_ghost_values();
+    now.update_ghost_values();
+    at_first_zone.update_ghost_values();
     const unsigned long long n_broken  = history.n_broken;
     const auto               take_from = [&](const std::size_t first, const std::size_t last) {
       for (std::size_t k = first; k < last; ++k)
@@ -415,18 +426,18 @@ namespace PeriDeal
                static_cast<types::global_dof_index>(all[k][3])}},
              all[k][1]);
     };
-    const auto join_above = [&](const double least) {
-      std::vector<unsigned int> list;
+    const auto join_all = [&](const Vector &weights) {
+      std::vector<Joining> list;
       for (unsigned int i = 0; i < nodes.n_local(); ++i)
-        if (zone.local_element(i) > least)
-          list.push_back(i);
-      of_lattice.join_nodes(list);
+        if (weights.local_element(i) > 0.)
+          list.push_back({i, weights.local_element(i)});
+      zone.join_nodes(list);
     };
     n_first = n_kept;
-    join_above(1.5);
+    join_all(at_first_zone);
     take_from(0, n_first);
     at_first();
-    join_above(0.5);
+    join_all(now);
     take_from(n_first, all.size());
     history.n_broken = n_broken;
     n_followed       = broken.size();

@@ -1,22 +1,39 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/mpi.h>
-
-#include <perideal/base/user_error.h>
-#include <perideal/operators/coupling/exchange_laws.h>
 #include <perideal/operators/solid/zone_breaking.h>
-#include <perideal/scene/lists.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-
-#include "stretch_fault.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** What bonds of a blending that break need. */
+    template <int dim>
+    void require_families(const BodyParameters<dim> &body, const std::string &entry)
+    {
+      const CouplingControl &coupling = body.coupling;
+      body.peridynamics.refuse(
+        body.peridynamics.completes_families(),
+        "Surface correction",
+        "'fictitious nodes' is not for 'Scheme = blending' with bonds that break ('" + entry +
+          "' in section 'Material'); use 'none', or 'Models = peridynamics'.");
+      coupling.refuse(
+        coupling.is_near_cracks() && coupling.width < 2.,
+        "Zone",
+        "found '" + coupling.zone_text() + "'; with 'Scheme = blending' bonds break ('" + entry +
+          "' in section 'Material') where their families are alone, and a zone of less than two horizons holds too few. Use 'follow', or 'cracks: 2' or more.");
+      body.elasticity.refuse(
+        body.elasticity.computes_temperature && body.elasticity.broken_bonds_conduct < 1.,
+        "Broken bonds conduct",
+        "broken bonds of 'Scheme = blending' in section 'Coupling' insulate nothing. Use 1, or 'Scheme = exchange'.");
+    }
+  } // namespace
+
 
   template <int dim>
   void ZoneBreaking<dim>::require(const BodyParameters<dim> &body)
@@ -31,11 +48,13 @@ namespace PeriDeal
       "'follow' is for bonds that may break: give section 'Material' a 'Fracture energy' or a 'Critical stretch', or use 'cracks: 1'.");
     if (!breaks)
       return;
-    coupling.refuse(!coupling.exchanges(),
-                    "Scheme",
-                    "'" + coupling.scheme_text() +
-                      "' has bonds that do not break, but section 'Material' has a '" + entry +
-                      "'. Use 'exchange', or 'Models = peridynamics'.");
+    coupling.refuse(
+      coupling.splices(),
+      "Scheme",
+      "'splice' has forces without an energy that breaking bonds could release, but section 'Material' has a '" +
+        entry + "'. Use 'exchange' or 'blending', or 'Models = peridynamics'.");
+    if (!coupling.exchanges())
+      require_families(body, entry);
     coupling.refuse(
       coupling.is_near_cracks() && coupling.width < 1.,
       "Zone",
@@ -51,35 +70,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ZoneBreaking<dim>::find_critical_stretches(const BodyParameters<dim> &body)
-  {
-    const Material          &material  = body.material;
-    const double             of_square = ElasticBonds<dim>::energy_per_square(of_lattice);
-    const CellStiffness<dim> stiffness = ElasticBonds<dim>::stiffness(body);
-    std::string              message;
-    Vector                   stretches(nodes.partitioner());
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        const Point<dim> &p = nodes.position(i);
-        double           &s = stretches.local_element(i);
-        s                   = material.critical_stretch ?
-                                material.critical_stretch->value(p) :
-                                std::sqrt(material.fracture_energy->value(p) / (stiffness.at(p) * of_square));
-        if (message.empty() && !(s > 0.))
-          message = stretch_fault(material.critical_stretch.has_value(), p);
-      }
-    throw_on_all_if_any(nodes.communicator(), message);
-    stretches.update_ghost_values();
-    critical.assign(stretches.begin(), stretches.begin() + nodes.n_local());
-  }
-
-
-  template <int dim>
   void ZoneBreaking<dim>::find_cells(const DoFHandler<dim> &dofs)
   {
     std::vector<typename StretchedCells<dim>::Corners> list;
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && of_lattice.is_of_lattice(cell))
+      if (cell->is_locally_owned() &&
+          cell->extent_in_direction(0) <= 1.5 * nodes.lattice()->spacing[0])
         {
           list.emplace_back();
           for (const unsigned int v : cell->vertex_indices())
@@ -105,10 +101,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                        \
-  template void ZoneBreaking<dim>::require(const BodyParameters<dim> &);                 \
-  template void ZoneBreaking<dim>::find_critical_stretches(const BodyParameters<dim> &); \
-  template void ZoneBreaking<dim>::find_cells(const DoFHandler<dim> &);                  \
+#define PERIDEAL_INSTANTIATE(dim)                                        \
+  template void ZoneBreaking<dim>::require(const BodyParameters<dim> &); \
+  template void ZoneBreaking<dim>::find_cells(const DoFHandler<dim> &);  \
   template void ZoneBreaking<dim>::set_limits_of_cells();
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

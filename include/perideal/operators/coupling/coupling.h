@@ -16,7 +16,7 @@
 namespace PeriDeal
 {
   template <int dim>
-  class LatticeBonds;
+  class BreakableZone;
   template <int dim>
   class NodeFamilies;
 
@@ -59,8 +59,8 @@ namespace PeriDeal
       return nullptr;
     }
 
-    /** The bonds of an exchange on a lattice, which may break; null where there are none. */
-    virtual LatticeBonds<dim> *breakable()
+    /** Where bonds may break; null where they cannot. */
+    virtual BreakableZone<dim> *breakable()
     {
       return nullptr;
     }

@@ -7,6 +7,7 @@
 #include <perideal/bonds/families.h>
 #include <perideal/laws/interface.h>
 #include <perideal/mesh/lattice_sites.h>
+#include <perideal/operators/coupling/breakable_zone.h>
 #include <perideal/scene/body_parameters.h>
 #include <perideal/scene/zone.h>
 
@@ -35,9 +36,10 @@ namespace PeriDeal
    * On a graded mesh hanging nodes and others on the side of a larger cell have no bonds.
    */
   template <int dim>
-  class LatticeBonds
+  class LatticeBonds : public BreakableZone<dim>
   {
   public:
+    using typename BreakableZone<dim>::Joining;
     using Site = typename Lattice<dim>::Index;
 
     /** What the lattice has at a site and in the cell whose lowest corner that is. */
@@ -93,8 +95,29 @@ namespace PeriDeal
     template <typename Visit>
     void for_each_full_passage(const Visit &visit) const;
 
-    /** The bond between two nodes known here has broken for good. Not collective. */
-    void mark_broken(const unsigned int a, const unsigned int b);
+    const Families<dim> &families_of_bonds() const override
+    {
+      return families;
+    }
+
+    double weight_of(const unsigned int node) const override
+    {
+      return in_zone(node) ? 1. : 0.;
+    }
+
+    /** A cell keeps nothing once a bond of its own breaks. */
+    bool is_free(const unsigned int node) const override
+    {
+      return in_zone(node);
+    }
+
+    bool may_break(const unsigned int, const unsigned int) const override
+    {
+      return true;
+    }
+
+    void mark_broken(const unsigned int a, const unsigned int b) override;
+    bool is_broken(const unsigned int a, const unsigned int b) const override;
 
     bool any_broken() const
     {
@@ -107,16 +130,9 @@ namespace PeriDeal
      */
     bool is_parted(const Site &cell) const;
 
-    /**
-     * Add to a list the nodes known here within a distance of a place that may join the zone and
-     * are not in it. Not collective.
-     */
-    void find_joining(const dealii::Point<dim>  &place,
-                      const double               distance,
-                      std::vector<unsigned int> &list) const;
-
-    /** They join. Not collective. */
-    void join_nodes(const std::vector<unsigned int> &list);
+    /** Nodes within one horizon that may join the zone. */
+    void find_joining(const dealii::Point<dim> &place, std::vector<Joining> &list) const override;
+    void join_nodes(const std::vector<Joining> &list) override;
 
     /** As Coupling::possible_neighbors_of(). */
     void possible_neighbors_of(const unsigned int node, std::vector<unsigned int> &neighbors) const;
@@ -153,6 +169,7 @@ namespace PeriDeal
     Site            site_of(const unsigned int node) const;
     double          stiffness_on(const Offset &offset, const Site &start) const;
     std::size_t     number_of(const SiteData &start, const Offset &offset) const;
+    std::size_t     number_between(const unsigned int a, const unsigned int b) const;
 
     double                last;                      // time of the run
     bool                  stays             = false; // all that may join the zone are in it

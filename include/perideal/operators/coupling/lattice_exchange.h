@@ -35,7 +35,7 @@ namespace PeriDeal
     /** Collective. Throws UserError for a zone without nodes, and as Law::calibrate(). */
     LatticeExchange(Nodes<dim> &nodes, const BodyParameters<dim> &body, const Zone<dim> &zone);
 
-    LatticeBonds<dim> *breakable() override
+    BreakableZone<dim> *breakable() override
     {
       return &bonds;
     }

@@ -8,6 +8,7 @@
 #include <perideal/mesh/nodes.h>
 #include <perideal/scene/zone.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace PeriDeal
@@ -29,12 +30,21 @@ namespace PeriDeal
       set(zone);
     }
 
-    /** As the zone is now. */
+    /** As the zone is now, and where raised no less. */
     void set(const Zone<dim> &zone)
     {
       weights.resize(nodes->n_local());
       for (unsigned int i = 0; i < weights.size(); ++i)
-        weights[i] = zone.weight(nodes->position(i), overlap);
+        weights[i] =
+          std::max(zone.weight(nodes->position(i), overlap), raised.empty() ? 0. : raised[i]);
+    }
+
+    /** That weight is at least so much from now on. */
+    void raise(const unsigned int node, const double weight)
+    {
+      raised.resize(nodes->n_local(), 0.);
+      raised[node]  = std::max(raised[node], weight);
+      weights[node] = std::max(weights[node], weight);
     }
 
     double operator[](const unsigned int node) const
@@ -67,12 +77,12 @@ namespace PeriDeal
 
     std::size_t memory_consumption() const
     {
-      return weights.capacity() * sizeof(double);
+      return (weights.capacity() + raised.capacity()) * sizeof(double);
     }
 
   private:
     const Nodes<dim>   *nodes;
-    double              overlap; // a length
-    std::vector<double> weights;
+    double              overlap;         // a length
+    std::vector<double> weights, raised; // the latter empty while none are
   };
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 
 #include <perideal/bonds/fictitious_extension.h>
 #include <perideal/laws/elasticity.h>
+#include <perideal/operators/coupling/family_zone.h>
 #include <perideal/operators/coupling/node_families.h>
 #include <perideal/operators/coupling/weighted_coupling.h>
 #include <perideal/scene/body_parameters.h>
@@ -29,6 +30,9 @@ namespace PeriDeal
    * each node; its forces are those of the stress on the sides, but for one horizon from edges and
    * corners. q_i is summed over the bonds that are left by cracks.
    *
+   * Where bonds break, FamilyBonds has the families, beside the matrix, with q_i of the body before;
+   * what is visited here knows nothing of broken bonds.
+   *
    * In one dimension there is no dilatation, and the bonds of a family are visited one by one, so
    * that rows reach one horizon and not two.
    *
@@ -41,6 +45,7 @@ namespace PeriDeal
   {
   public:
     using typename Coupling<dim>::Bond;
+    using typename Coupling<dim>::Cell;
     using typename NodeFamilies<dim>::Family;
     using typename NodeFamilies<dim>::ThermalStrain;
 
@@ -52,6 +57,16 @@ namespace PeriDeal
                   const BodyParameters<dim>       &body,
                   const Zone<dim>                 &zone,
                   std::unique_ptr<const Weighting> weighting);
+
+    BreakableZone<dim> *breakable() override
+    {
+      return breaks ? &*breaks : nullptr;
+    }
+
+    bool parts_cell(const Cell &cell) const override
+    {
+      return breaks && breaks->parts(cell);
+    }
 
     const NodeFamilies<dim> *node_families() const override;
     void        bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override; // none
@@ -122,6 +137,7 @@ namespace PeriDeal
     void        scale_rows(Family &family) const;
 
     std::optional<FictitiousExtension<dim>> extension;
+    std::optional<FamilyZone<dim>>          breaks;         // none: no bonds break
     std::vector<dealii::types::boundary_id> symmetry_sides; // with an extension
     std::vector<bool>     acts; // of owned nodes: the family ever reaches the zone
     std::vector<StateLaw> laws; // of owned nodes that act

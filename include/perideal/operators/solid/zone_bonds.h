@@ -4,9 +4,10 @@
 #pragma once
 
 #include <perideal/operators/coupling/coupling.h>
-#include <perideal/operators/coupling/lattice_bonds.h>
 #include <perideal/operators/parts/crack_side_factors.h>
 
+#include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -18,13 +19,12 @@ namespace dealii::TrilinosWrappers
 namespace PeriDeal
 {
   /**
-   * The active bonds of an exchange in a solid as a list beside the matrix of the elements, so that
-   * bonds appear and break at a cost that goes with their number:
+   * The bonds of a coupled solid on a lattice as a list beside the matrix of the elements, so that
+   * bonds appear and break at a cost that goes with their number. What forces they make of u, and
+   * with it K, is that of PairBonds (exchange) or FamilyBonds (blending).
    *
-   *   K u = sum over bonds of W xi (xi . (u_i - u_j)).
-   *
-   * Each owned node of the zone has a row of its bonds, in the order of their offsets; bonds of
-   * two processes stand in rows of both. Not collective.
+   * Each owned node that bonds act on has a row of them, in the order of their offsets; bonds of
+   * two processes stand in rows of both. Not collective unless stated.
    */
   template <int dim>
   class ZoneBonds
@@ -34,49 +34,70 @@ namespace PeriDeal
     {
       unsigned int neighbor; // local number
       unsigned int vector;   // number of xi
-      double       strength; // W, times the factors beside cracks; 0: broken, or cut by a crack
+      double       strength; // W; 0: broken, or cut by a crack
     };
 
-    /** Both have to outlive this object, which has no bonds yet. */
-    ZoneBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds);
+    virtual ~ZoneBonds() = default;
 
-    /** Take the rows of some owned nodes anew, each once, as the coupling has them now. */
-    void set_rows(const std::vector<unsigned int> &of_nodes, const CrackSideFactors &factors);
+    /**
+     * The critical stretches of all nodes known here. Collective. Throws UserError for those not
+     * above 0.
+     */
+    virtual std::vector<double> critical_stretches(const BodyParameters<dim> &body) const = 0;
+
+    /**
+     * Take the rows of some owned nodes anew, each once, as the coupling has them now, W times the
+     * factors beside cracks. Collective.
+     */
+    virtual void set_rows(const std::vector<unsigned int> &of_nodes,
+                          const CrackSideFactors          &factors) = 0;
+
+    /**
+     * The owned nodes whose forces change with bonds, ascending. @p ends are those of the bonds,
+     * others included.
+     */
+    virtual std::vector<unsigned int> rows_at(const std::vector<unsigned int> &ends) const = 0;
 
     /** The bond between an owned node and another one bears nothing any more. */
     void release(const unsigned int node, const unsigned int neighbor);
 
-    /** Add K u to the owned unknowns of y; ghosts of u are up to date. */
-    void add_forces(Vector &y, const Vector &u) const;
+    /** Add K u to the owned unknowns of y; ghosts of u are up to date. Collective. */
+    void add_forces(Vector &y, const Vector &u) const
+    {
+      add_forces_of(with_rows, 1., y, u);
+    }
 
-    /** Add a multiple of K u in the rows of some nodes; ghosts as above. */
-    void add_forces_of(const std::vector<unsigned int> &of_nodes,
-                       const double                     multiple,
-                       Vector                          &y,
-                       const Vector                    &u) const;
+    /** Add a multiple of K u in the rows of some nodes; ghosts as above. Collective. */
+    virtual void add_forces_of(const std::vector<unsigned int> &of_nodes,
+                               const double                     multiple,
+                               Vector                          &y,
+                               const Vector                    &u) const = 0;
+
+    /** What an owned node has of the diagonal of K. */
+    virtual dealii::Tensor<1, dim> diagonal_of(const unsigned int node) const = 0;
 
     /** Add the diagonal of K to a vector of unknowns. */
     void add_diagonal(Vector &diagonal) const;
 
-    /** Add the sums over the absolute values of rows of K. */
-    void add_row_sums(std::vector<double> &sums) const;
+    /** Add the sums over the absolute values of rows of K, or more. Collective. */
+    virtual void add_row_sums(std::vector<double> &sums) const = 0;
 
     /** Add to a matrix what whole bonds between vertices of a cell have of K. Not compressed. */
     void add_between_vertices(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
-    /** The energy of the bonds in rows of these nodes, half of it for each end; ghosts as above. */
-    double energy(const Vector                    &u,
-                  const std::vector<unsigned int> &of_nodes,
-                  const std::vector<double>       &thermal) const;
+    /** The energy of what these nodes have of K; over all nodes, all of it. Ghosts as above. */
+    virtual double energy(const Vector                    &u,
+                          const std::vector<unsigned int> &of_nodes,
+                          const std::vector<double>       &thermal) const = 0;
 
     /**
      * Add the loads of thermal strains at nodes, means of both ends, in the rows of these nodes.
-     * Returns the energy of a body that is held everywhere.
+     * Returns the energy of a body that is held everywhere. Collective.
      */
-    double add_thermal(Vector                          &loads,
-                       const std::vector<unsigned int> &of_nodes,
-                       const std::vector<double>       &thermal,
-                       const double                     multiple) const;
+    virtual double add_thermal(Vector                          &loads,
+                               const std::vector<unsigned int> &of_nodes,
+                               const std::vector<double>       &thermal,
+                               const double                     multiple) const = 0;
 
     /** Owned nodes with a row. */
     const std::vector<unsigned int> &nodes() const
@@ -102,7 +123,21 @@ namespace PeriDeal
     /** Of this process: each whole bond is counted half in a row. */
     double n_whole() const;
 
-    std::size_t memory_consumption() const;
+    virtual std::size_t memory_consumption() const;
+
+  protected:
+    /** @param bonds_of_zone has to outlive this object, which has no bonds yet. */
+    explicit ZoneBonds(const Families<dim> &bonds_of_zone);
+
+    /** The factor of xi xi^T in K by a bond alone. */
+    virtual double spring(const unsigned int node, const Bond &bond) const = 0;
+
+    void set_row(const unsigned int                                     node,
+                 const std::vector<typename DiffusionBonds<dim>::Bond> &list);
+    void finish_rows();
+
+    const Families<dim>                &families;
+    std::vector<dealii::Tensor<1, dim>> vectors;
 
   private:
     struct Row
@@ -114,14 +149,18 @@ namespace PeriDeal
     unsigned int vector_between(const unsigned int node, const unsigned int neighbor) const;
     void         pack();
 
-    const Coupling<dim>                &coupling;
-    const LatticeBonds<dim>            &of_lattice;
-    typename LatticeBonds<dim>::Site    reach; // offsets in each direction
-    std::vector<dealii::Tensor<1, dim>> vectors;
-    std::vector<bool>                   is_between_vertices; // by number of the vector
-    std::vector<Bond>                   bonds;
-    std::vector<Row>                    rows;       // of owned nodes
-    std::vector<unsigned int>           with_rows;  // ascending
-    std::size_t                         unused = 0; // of the bonds, in rows that were taken anew
+    std::array<int, dim>      reach{};             // offsets in each direction
+    std::vector<bool>         is_between_vertices; // by number of the vector
+    std::vector<Bond>         bonds;
+    std::vector<Row>          rows;           // of owned nodes
+    std::vector<unsigned int> with_rows;      // ascending
+    std::size_t               unused = 0;     // of the bonds, in rows that were taken anew
+    bool                      more   = false; // or fewer nodes have rows than with_rows says
   };
+
+
+  /** The bonds of a coupling that has a zone in which they may break, without rows. */
+  template <int dim>
+  std::unique_ptr<ZoneBonds<dim>> make_zone_bonds(Coupling<dim>             &coupling,
+                                                  const BodyParameters<dim> &body);
 } // namespace PeriDeal

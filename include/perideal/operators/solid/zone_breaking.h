@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/bonds/bond_break.h>
+#include <perideal/operators/coupling/breakable_zone.h>
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/operators/solid/stretched_cells.h>
@@ -11,6 +12,7 @@
 #include <perideal/scene/body_parameters.h>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,24 +20,24 @@
 namespace PeriDeal
 {
   /**
-   * Bonds of an exchange that break for good in a solid, and a zone that follows (`Zone = follow`).
+   * Bonds of a coupled solid that break for good, and a zone that follows (`Zone = follow`).
    *
    * A bond breaks at a stretch (xi . (u_j - u_i))/x^2 - alpha dT, dT the mean of its ends, beyond
-   * the smaller critical stretch s of both ends. It is given, or follows from the fracture energy G
-   * by the bonds alone (what is left of the cells releases 3 % of G at most):
-   *   G = s^2/2 k V sum over half the family of w x^4 |xi_n|, mean over the axes n,
-   * W = k w V_i V_j the bond's strength. A cell between whose vertices a bond has broken keeps
-   * nothing (LatticeBonds::is_parted()).
+   * the smaller critical stretch of both ends (ZoneBonds::critical_stretches()), where the zone
+   * lets it (BreakableZone::may_break()). In an exchange a cell between whose vertices a bond has
+   * broken keeps nothing (LatticeBonds::is_parted()).
    *
-   * The zone grows by the nodes within one horizon of the centre of a cell whose largest principal
-   * strain, thermal strain taken off, has reached a share of the critical stretch, and of the ends
-   * of broken bonds. All functions are collective unless stated, and leave the same on all
-   * processes.
+   * The zone grows around the centre of a cell whose largest principal strain, thermal strain taken
+   * off, has reached a share of the critical stretch, and around the ends of broken bonds: in an
+   * exchange by the nodes within one horizon, in a blending as FamilyZone says. All functions are
+   * collective unless stated, and leave the same on all processes.
    */
   template <int dim>
   class ZoneBreaking
   {
   public:
+    using Joining = typename BreakableZone<dim>::Joining;
+
     /** Throws UserError for bodies whose bonds cannot break beside elements. Not collective. */
     static void require(const BodyParameters<dim> &body);
 
@@ -71,8 +73,8 @@ namespace PeriDeal
     /** Of those the boxes around bonds between vertices of a cell, whose cells are parted. */
     std::vector<dealii::BoundingBox<dim>> parted_by(const std::vector<NodePair> &broken) const;
 
-    /** Of those the owned nodes, ascending. Not collective. */
-    std::vector<unsigned int> owned_ends(const std::vector<NodePair> &broken) const;
+    /** The owned nodes whose forces change with them, ascending. Not collective. */
+    std::vector<unsigned int> rows_of(const std::vector<NodePair> &broken) const;
 
     /** They break for good at time t. Not collective. */
     void take(const std::vector<NodePair> &broken, const double t);
@@ -88,13 +90,13 @@ namespace PeriDeal
       const Vector                  &u,
       const dealii::DoFHandler<dim> &dofs) const;
 
-    /** Nodes known here within a horizon of these that are to join, ascending. Not collective. */
-    std::vector<unsigned int> joining(const std::vector<dealii::Point<dim>> &places) const;
+    /** Nodes known here that are to join around these places, ascending. Not collective. */
+    std::vector<Joining> joining(const std::vector<dealii::Point<dim>> &places) const;
 
     /** They join; rows of bonds are left. Not collective. */
-    void join(const std::vector<unsigned int> &list)
+    void join(const std::vector<Joining> &list)
     {
-      of_lattice.join_nodes(list);
+      zone.join_nodes(list);
     }
 
     /**
@@ -137,8 +139,12 @@ namespace PeriDeal
 
     std::size_t memory_consumption() const;
 
-    ZoneBonds<dim> bonds;
-    BreakHistory   history;
+  private:
+    std::unique_ptr<ZoneBonds<dim>> own_bonds;
+
+  public:
+    ZoneBonds<dim> &bonds;
+    BreakHistory    history;
 
   private:
     static constexpr unsigned int n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
@@ -153,7 +159,6 @@ namespace PeriDeal
     template <typename Take>
     void visit_stretches(const Vector &u, const Take &take) const;
 
-    void find_critical_stretches(const BodyParameters<dim> &body);
     void find_cells(const dealii::DoFHandler<dim> &dofs);
     void set_limits_of_cells();
     /**
@@ -168,15 +173,14 @@ namespace PeriDeal
     /** Local number of a node, or none. */
     std::optional<unsigned int> known(const dealii::types::global_dof_index node) const;
 
-    LatticeBonds<dim>  &of_lattice;
+    BreakableZone<dim> &zone;
     const Nodes<dim>   &nodes;
-    const double        horizon;
     const double        share_of_zone; // 0: the zone stays
     std::vector<double> critical;      // of all nodes known here
     std::vector<double> thermal;
     StretchedCells<dim> cells;          // whose centres have lit nothing yet
     std::vector<Break>  broken;         // in the order of breaking
     std::size_t         n_followed = 0; // of those, by the zone
-    std::vector<bool>   kept_zone;
+    std::vector<double> kept_zone;      // weights of owned nodes
   };
 } // namespace PeriDeal
