@@ -110,7 +110,7 @@ namespace PeriDeal
 
     /** About a fifth, as if at random. */
     template <int dim>
-    bool is_chosen(const Point<dim> &a, const Point<dim> &b)
+    bool is_chosen(const dealii::Point<dim> &a, const dealii::Point<dim> &b)
     {
       double phase = 0.;
       for (unsigned int d = 0; d < dim; ++d)
@@ -124,8 +124,8 @@ namespace PeriDeal
     void check_sound(const Body<dim> &body)
     {
       const Vector x = body.values(bumpy_vector<dim>);
-      Vector       z = body.values([](const Point<dim> &p) {
-        Tensor<1, dim> value;
+      Vector       z = body.values([](const dealii::Point<dim> &p) {
+        dealii::Tensor<1, dim> value;
         for (unsigned int d = 0; d < dim; ++d)
           value[d] = std::cos(17. * p[d] * (1. + p[0]) + d) + p.norm();
         return value;
