@@ -30,8 +30,8 @@ namespace PeriDeal
    * each node; its forces are those of the stress on the sides, but for one horizon from edges and
    * corners. q_i is summed over the bonds that are left by cracks.
    *
-   * Where bonds break, FamilyBonds has the families, beside the matrix, with q_i of the body before;
-   * what is visited here knows nothing of broken bonds.
+   * Where bonds break, FamilyBonds has the families, beside the matrix, and q_i is of the body
+   * before; what is visited here knows nothing of broken bonds.
    *
    * In one dimension there is no dilatation, and the bonds of a family are visited one by one, so
    * that rows reach one horizon and not two.

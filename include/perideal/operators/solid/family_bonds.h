@@ -13,8 +13,8 @@ namespace PeriDeal
   /**
    * The state-based families of a blending, by their energies
    *
-   *   E_i = k_i/2 sum_j W_ij c_ij^2/x^2 + a_i/2 (sum_j W_ij c_ij)^2,   c_ij = xi . (u_j - u_i) - s x^2,
-   *   k_i = beta_i b/q_i,   a_i = beta_i c d/(V_i q_i^2),
+   *   E_i = k_i/2 sum_j W_ij c_ij^2/x^2 + a_i/2 (sum_j W_ij c_ij)^2,   k_i = beta_i b/q_i,
+   *   c_ij = xi . (u_j - u_i) - s x^2,   a_i = beta_i c d/(V_i q_i^2),
    *
    * the symbols as in StateOperator, beta the weight of peridynamics (WeightedCoupling): where it
    * is 1, the same forces, and the same critical stretch. Broken bonds are left out of the sums,
