@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <perideal/base/interleaved.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/point_order.h>
 #include <perideal/operators/solid/zone_breaking.h>
@@ -27,6 +28,33 @@ namespace PeriDeal
       for (const auto &list : Utilities::MPI::all_gather(communicator, own))
         all.insert(all.end(), list.begin(), list.end());
       return all;
+    }
+
+
+    /**
+     * Which cells have lit nothing yet, by their first corners; limits are lost where a body is
+     * loaded.
+     */
+    template <int dim>
+    void exchange_cells(Archive             &archive,
+                        const NodeKeys      &keys,
+                        const Nodes<dim>    &nodes,
+                        StretchedCells<dim> &cells)
+    {
+      using Corners = typename StretchedCells<dim>::Corners;
+      Vector open(nodes.partitioner());
+      cells.set_limits([&](const Corners &corners) {
+        open.local_element(corners[0]) = archive.loads() ? 0. : 1.;
+        return 0.; // so that all are visited
+      });
+      open.compress(VectorOperation::add);
+      archive.exchange("cells that have lit nothing", open, keys);
+      if (!archive.loads())
+        return;
+      open.update_ghost_values();
+      cells.visit_stretched(
+        Vector(interleaved(*nodes.partitioner(), dim)),
+        [&](const Corners &corners) { return open.local_element(corners[0]) == 0.; });
     }
   } // namespace
 
@@ -380,6 +408,11 @@ namespace PeriDeal
       }
     archive.exchange("zone", now, keys);
     archive.exchange("zone at first", at_first_zone, keys);
+    if (share_of_zone > 0.)
+      {
+        exchange_cells(archive, keys, nodes, cells);
+        set_limits_of_cells();
+      }
 
     std::vector<typename Families<dim>::Member> family;
     KeyedPairs                                  pairs;
