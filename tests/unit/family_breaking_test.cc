@@ -224,6 +224,7 @@ TEST(FamilyBreaking, follows_what_is_stretched)
   check_following_zone<1>({{"Domain/Cells", "64"}}, 0.8);
   check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Domain/Upper corner", "1.4, 1.2"}}, 0.8);
   check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Coupling/Overlap", "1"}}, 0.9);
+  check_following_zone<2>(warm + Settings{{"Domain/Cells", "28, 24"}}, 0.9);
   check_following_zone<3>({{"Domain/Upper corner", "1.2, 0.7, 0.6"}, {"Domain/Cells", "12, 7, 6"}},
                           1.1);
 }
