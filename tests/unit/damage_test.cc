@@ -361,8 +361,9 @@ namespace PeriDeal
     expect_parts(fault_of(ModelKind::finite_elements, {}), {"Fracture energy", "no effect"});
     expect_parts(fault_of(ModelKind::coupled, {{"Coupling/Zone", "cracks: 1"}}),
                  {"'Zone'", "is empty", "'follow'"});
-    expect_parts(fault_of(ModelKind::coupled, {{"Coupling/Scheme", "blending"}}),
-                 {"Fracture energy", "'Scheme'", "do not break"});
+    expect_parts(fault_of(ModelKind::coupled, {{"Coupling/Scheme", "splice"}}),
+                 {"Fracture energy", "'Scheme'", "without an energy"});
+    EXPECT_EQ(fault_of(ModelKind::coupled, {{"Coupling/Scheme", "blending"}}), "");
     expect_parts(fault_of(ModelKind::peridynamics, {{"Material/Critical stretch", "1"}}),
                  {"Critical stretch", "Fracture energy"});
     expect_parts(fault_of(ModelKind::peridynamics, {{"Material/Fracture energy", "x - 0.5"}}),
