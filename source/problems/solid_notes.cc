@@ -196,9 +196,11 @@ namespace PeriDeal
         (run.scene.coupling.exchanges() ?
            ", and have no bonds that could break: what breaks ends there. " :
            ", where elements still hold together what bonds would part: what breaks ends there. ") +
-        (run.scene.coupling.follows_stretches() ?
+        (!run.scene.coupling.follows_stretches() ?
+           "'Zone = follow' in section 'Coupling' goes with it." :
+         run.scene.coupling.exchanges() ?
            "Keep cells of lattice size there: 'Fine where' or a smaller 'Coarsening' in section 'Domain'." :
-           "'Zone = follow' in section 'Coupling' goes with it."));
+           "A smaller 'Zone share' in section 'Coupling' lets the zone grow before that, and a smaller 'Time step' in section 'Time' more often."));
     }
 
 

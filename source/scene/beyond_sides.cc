@@ -157,7 +157,7 @@ namespace PeriDeal
       return {};
     const Tensor<1, dim> spacing = body.domain.spacing();
     if (conditions.displacement_layer >
-        1.999 * *std::max_element(spacing.begin_raw(), spacing.end_raw()))
+        1.499 * *std::max_element(spacing.begin_raw(), spacing.end_raw()))
       return {};
     return "With nodes at cell centers a displacement holds the outermost row of nodes at " +
            join_names(names) +

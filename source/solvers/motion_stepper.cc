@@ -274,6 +274,7 @@ namespace PeriDeal
       {
         op.unbalanced(change, last, span.now);
         drift = account.energy(last, last_velocity, change).drift;
+        op.unbalanced(change, u, next); // mend_unbalanced() goes on from the latest forces
       }
     account.add_step(last, u, unbalanced, next);
     if (jumps)

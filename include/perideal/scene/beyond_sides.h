@@ -62,7 +62,7 @@ namespace PeriDeal
   /**
    * For `Models = peridynamics` with nodes at cell centers: that a displacement holds a row of
    * nodes inside the side, and what this does; empty where no families go on beyond such a side, or
-   * a layer of nodes is held. Not collective.
+   * a layer of two rows is held. Not collective.
    */
   template <int dim>
   std::string note_on_held_rows(const BodyParameters<dim> &body);

@@ -66,10 +66,15 @@ namespace PeriDeal
         extension.emplace(own_families, beyond_sides(body));
       }
     if (body.material.fracture_energy || body.material.critical_stretch)
-      breaks.emplace(own_families,
-                     weights_now,
-                     body.coupling.width * own_families.weights().horizon(),
-                     this->overlap);
+      {
+        // What FamilyZone looks at around the bonds of the corners of a cell, from its centre.
+        const double horizon = own_families.weights().horizon(),
+                     around  = horizon + 1.5 * body.domain.spacing().norm();
+        breaks.emplace(own_families,
+                       weights_now,
+                       std::max(body.coupling.width * horizon, around),
+                       this->overlap);
+      }
     find_nodes_that_act();
     laws.resize(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)

@@ -333,16 +333,24 @@ namespace PeriDeal
     const std::vector<Point<dim>> &places) const
   {
     std::vector<Joining> list;
+    const auto           keep_largest_weights = [&list]() {
+      std::sort(list.begin(), list.end(), [](const Joining &a, const Joining &b) {
+        return a.node != b.node ? a.node < b.node : a.weight > b.weight;
+      });
+      list.erase(std::unique(list.begin(),
+                             list.end(),
+                             [](const Joining &a, const Joining &b) { return a.node == b.node; }),
+                 list.end());
+      return list.size();
+    };
+    std::size_t most = 1 << 16; // places of a body under even strain are near to each other
     for (const Point<dim> &place : places)
-      zone.find_joining(place, list);
-    // Of each node the largest weight.
-    std::sort(list.begin(), list.end(), [](const Joining &a, const Joining &b) {
-      return a.node != b.node ? a.node < b.node : a.weight > b.weight;
-    });
-    list.erase(std::unique(list.begin(),
-                           list.end(),
-                           [](const Joining &a, const Joining &b) { return a.node == b.node; }),
-               list.end());
+      {
+        zone.find_joining(place, list);
+        if (list.size() > most)
+          most = std::max(most, 2 * keep_largest_weights());
+      }
+    keep_largest_weights();
     return list;
   }
 

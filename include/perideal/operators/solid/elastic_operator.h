@@ -32,8 +32,8 @@ namespace PeriDeal
    * motions of the body and of parts that nothing holds together. C of the interface is the lumped
    * mass M.
    *
-   * Where nonlinear(), residual() is that of the deformed body, and K of apply() and multiply() its
-   * tangent at the last linearize(), at first that of the undeformed body.
+   * Where nonlinear(), residual() is that of the deformed body, and K of apply() its tangent at the
+   * last linearize(), at first that of the undeformed body; multiply() leaves contact out.
    */
   class ElasticOperator : public Operator
   {
@@ -188,7 +188,7 @@ namespace PeriDeal
       return false;
     }
 
-    /** Find which faces of cracks touch at u. Returns whether that and K change. Collective. */
+    /** Find what touches at u, and return as SolidContact::update() does. Collective. */
     virtual bool update_contact(const Vector & /*u*/)
     {
       return false;
@@ -196,7 +196,7 @@ namespace PeriDeal
 
     /**
      * unbalanced() at the u and t of the last widen_zone() and break_bonds(), behind which nothing
-     * else has changed. @p r is that of the body before. Collective.
+     * else has changed. @p r is the latest that was found of the body before. Collective.
      */
     virtual void mend_unbalanced(Vector &r, const Vector &u, const double t) const
     {

@@ -53,7 +53,7 @@ namespace PeriDeal
     /**
      * To be called before anything else is asked for at u. Energy is gained where nodes have come
      * to be asked between others, by bonds that they have lost. Returns whether nodes were nearer
-     * than d at the last add_forces().
+     * than d at the last add_forces(): what touches may change with any u then.
      */
     bool   update(const Vector &u, double &gained) override;
     double change(const std::vector<unsigned int> &of_nodes, const Vector &u) override;

@@ -24,7 +24,7 @@ namespace PeriDeal
     virtual ~SolidContact() = default;
 
     /**
-     * Find what touches at u. Returns whether forces change by that otherwise than with u.
+     * Find what touches at u. Returns whether energy may not be kept: what touches has changed.
      * @param gained energy that contact has got by being found at this u
      */
     virtual bool update(const Vector & /*u*/, double &gained)
@@ -52,7 +52,7 @@ namespace PeriDeal
     virtual void add_forces(Vector & /*y*/, const Vector & /*u*/, const double /*multiple*/) const
     {}
 
-    /** Add a multiple of what add_forces() gave at last. Not collective. */
+    /** Add a multiple of what add_forces() gave at last, since update(). Not collective. */
     virtual void add_last_forces(Vector & /*y*/, const double /*multiple*/) const {}
 
     /** Make add_tangent() that at u, where it is not the same at any u. */

@@ -20,7 +20,7 @@ namespace PeriDeal
 {
   /**
    * The bonds of a coupled solid on a lattice as a list beside the matrix of the elements, so that
-   * bonds appear and break at a cost that goes with their number. What forces they make of u, and
+   * the matrix stays where bonds appear and break. What forces they make of u, and
    * with it K, is that of PairBonds (exchange) or FamilyBonds (blending).
    *
    * Each owned node that bonds act on has a row of them, in the order of their offsets; bonds of
