@@ -19,8 +19,8 @@ namespace PeriDeal
    * are 1 at all corners of all cells that touch the box around it: nothing is left of elements
    * there, and both families it belongs to have their whole energy.
    *
-   * Where the body is about to break, weights become 1 within two horizons (of the bond, and of the
-   * families at its ends), and fall over the overlap outside of them.
+   * Where the body is about to break, weights become 1 within a reach, of two horizons (that of the
+   * bond, and that of the families at its ends) or more, and fall over the overlap outside of it.
    */
   template <int dim>
   class FamilyZone : public BreakableZone<dim>
