@@ -187,7 +187,7 @@ DIGITS = {**QUIET, "Solver/Tolerance": "1e-12", "Time/Tolerance": "1e-8"}  # for
 
 # Notes of healthy twins: what was done, and advice that is not about what failed.
 ADVICE = ("the image has", "reaches out of the body", "are taken as", "the cracks grow in", "finite elements solve the same problem", "of this horizon",
-          "a crack along the rows", "shear modulus", "divides the stiffness of a bond")
+          "a crack along the rows", "shear modulus", "divides the stiffness of a bond", "holds the outermost row")
 
 
 def twin_of(name, overrides, words):
