@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastic_coupling_tools.h"
+#include "zone_breaking_tools.h"
 
 using namespace PeriDeal;
 using namespace PeriDeal::OperatorTests;
@@ -25,15 +25,12 @@ namespace
                                            {"Elasticity/Contact", "false"}};
   }
 
-  const Settings warm{{"Material/Thermal expansion", "1e-3"},
-                      {"Elasticity/Temperature change", "2"}};
-
 
   /** All bonds with a family in the zone for which choose(first place, second place) holds. */
   template <int dim, typename Choose>
   std::vector<NodePair> pairs_of(const Body<dim> &body, const Choose &choose)
   {
-    std::vector<NodePair>                       own, all;
+    std::vector<NodePair>                       own;
     std::vector<typename Families<dim>::Member> family;
     const Coupling<dim>                        &coupling = body.elements->bonds();
     const auto                                 &layout   = *body.nodes->partitioner();
@@ -49,10 +46,7 @@ namespace
               own.push_back(pair);
           }
       }
-    for (const auto &list : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
-      all.insert(all.end(), list.begin(), list.end());
-    std::sort(all.begin(), all.end());
-    return all;
+    return pairs_of_all(own);
   }
 
 
@@ -102,61 +96,17 @@ namespace
   template <int dim>
   void check_a_fifth_broken(const std::string &zone, const double nu, const std::string &overlap)
   {
-    Body<dim>    body(blended<dim>(zone, nu) + warm + Settings{{"Coupling/Overlap", overlap}},
+    Body<dim> body(blended<dim>(zone, nu) + warm + Settings{{"Coupling/Overlap", overlap}},
                    ModelKind::coupled);
-    const auto   some = pairs_of(body, is_chosen<dim>);
-    const double n    = body.elements->size().bonds;
-    const Vector u    = body.values(bumpy_vector<dim>);
-    const double full = body.elements->energy(u);
-    body.elements->break_pairs(some, u, 0.);
-    EXPECT_NEAR(some.size() / n, 0.2, 0.1);
-    EXPECT_EQ(body.elements->size().bonds, static_cast<unsigned long long>(n) - some.size());
-    // What the rest of the body gives up is what is counted.
-    const double left = body.elements->energy(u);
-    EXPECT_GT(full, left);
-    EXPECT_NEAR((full - left) / body.elements->released_energy(), 1., 1e-11);
-    check_sound(body);
-    // A body that is warm all over and free is as large as it wants to be, and stores nothing.
-    Vector free = body.values([](const Point<dim> &p) { return Tensor<1, dim>(2e-3 * p); });
-    Vector forces(free), loads(free), held(free);
-    held = 0.;
-    body.elements->unbalanced(forces, free, 0.);
-    body.elements->unbalanced(loads, held, 0.);
-    EXPECT_LT(forces.linfty_norm(), 1e-12 * loads.linfty_norm());
-    EXPECT_LT(std::abs(body.elements->energy(free)), 1e-12 * body.elements->energy(held));
+    check_a_fifth_broken(body, pairs_of(body, is_chosen<dim>));
   }
 
 
-  /** A zone that follows what a field stretches: energies and forces that change with it. */
   template <int dim>
   void check_following_zone(const Settings &more, const double largest_share)
   {
     Body<dim> body(blended<dim>("follow", 0.4) + more, ModelKind::coupled);
-    EXPECT_EQ(body.elements->size().bonds, 0U);
-    Vector u = body.values([](const Point<dim> &p) {
-      Tensor<1, dim> value;
-      value[0] = 0.002 * std::exp(-400. * (p - 0.5 * Point<dim>::unit_vector(0)).norm_square());
-      return value;
-    });
-    body.op().distribute(u, 0.);
-    Vector forces(u), then(u);
-    body.op().unbalanced(forces, u, 0.);
-    const double whole = body.op().energy(u);
-    ASSERT_TRUE(body.op().widen_zone(u));
-    EXPECT_NEAR(whole - body.op().energy(u), body.op().energy_released_by_joining(), 1e-12 * whole);
-    EXPECT_GT(body.elements->size().bonds, 0U);
-    EXPECT_LT(body.elements->bonds().zone_share(), largest_share);
-    ASSERT_GT(body.op().break_bonds(u, 0.1), 0U);
-    EXPECT_NEAR((whole - body.op().energy(u)) / body.op().released_energy(), 1., 1e-11);
-    // What broke joins nothing in vain, and nothing breaks twice.
-    body.op().mend_unbalanced(forces, u, 0.);
-    body.op().unbalanced(then, u, 0.);
-    const double size = then.linfty_norm();
-    then -= forces;
-    EXPECT_LT(then.linfty_norm(), 1e-12 * size);
-    EXPECT_EQ(body.op().break_bonds(u, 0.2), 0U);
-    body.op().multiply(forces, u);
-    const Vector mended = body.op().diagonal();
+    check_following_zone(body, 0.002, 400., largest_share);
     check_sound(body);
   }
 } // namespace

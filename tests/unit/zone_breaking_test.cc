@@ -9,7 +9,7 @@
 #include <cmath>
 #include <functional>
 
-#include "elastic_coupling_tools.h"
+#include "zone_breaking_tools.h"
 
 using namespace PeriDeal;
 using namespace PeriDeal::OperatorTests;
@@ -29,7 +29,7 @@ namespace
   template <int dim, typename Choose>
   std::vector<NodePair> pairs_of(const Body<dim> &body, const Choose &choose)
   {
-    std::vector<NodePair>                     own, all;
+    std::vector<NodePair>                     own;
     std::vector<typename Coupling<dim>::Bond> bonds;
     const auto                               &layout = *body.nodes->partitioner();
     for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
@@ -42,43 +42,17 @@ namespace
               own.push_back(pair);
           }
       }
-    for (const auto &list : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
-      all.insert(all.end(), list.begin(), list.end());
-    std::sort(all.begin(), all.end());
-    return all;
+    return pairs_of_all(own);
   }
 
 
   template <int dim>
   void check_a_fifth_broken(const std::string &zone, const double nu)
   {
-    const Settings warm{{"Material/Thermal expansion", "1e-3"},
-                        {"Elasticity/Temperature change", "2"}};
-    Body<dim>      body(breakable<dim>(zone, nu) + warm, ModelKind::coupled);
-    const auto     some = pairs_of(body, [](const auto &, const auto &a, const auto &b) {
-      return is_chosen<dim>(a, b);
-    });
-    const double   n    = body.elements->size().bonds;
-    const Vector   u    = body.values(bumpy_vector<dim>);
-    const double   full = body.elements->energy(u);
-    body.elements->break_pairs(some, u, 0.);
-    EXPECT_NEAR(some.size() / n, 0.2, 0.1);
-    EXPECT_EQ(body.elements->size().bonds, static_cast<unsigned long long>(n) - some.size());
-    // What the rest of the body gives up is what is counted.
-    const double left = body.elements->energy(u);
-    EXPECT_GT(full, left);
-    EXPECT_NEAR((full - left) / body.elements->released_energy(), 1., 1e-11);
-    check_sound(body);
-    // A body that is warm all over and free is as large as it wants to be, and stores nothing.
-    Vector free = body.values([](const Point<dim> &p) { return Tensor<1, dim>(2e-3 * p); });
-    Vector forces(free);
-    body.elements->unbalanced(forces, free, 0.);
-    Vector held(free);
-    held = 0.;
-    Vector loads(free);
-    body.elements->unbalanced(loads, held, 0.);
-    EXPECT_LT(forces.linfty_norm(), 1e-12 * loads.linfty_norm());
-    EXPECT_LT(std::abs(body.elements->energy(free)), 1e-12 * body.elements->energy(held));
+    Body<dim> body(breakable<dim>(zone, nu) + warm, ModelKind::coupled);
+    check_a_fifth_broken(body, pairs_of(body, [](const auto &, const auto &a, const auto &b) {
+                           return is_chosen<dim>(a, b);
+                         }));
   }
 
 
@@ -249,35 +223,11 @@ TEST(ZoneBreaking, crack_made_of_broken_bonds_opens_as_the_prescribed_one)
 
 namespace
 {
-  /** A zone that follows what a field stretches: energies and forces that change with it. */
   template <int dim>
   void check_following_zone(const Settings &more)
   {
     Body<dim> body(breakable<dim>("follow", 0.3) + more, ModelKind::coupled);
-    EXPECT_EQ(body.elements->size().bonds, 0U);
-    Vector u = body.values([](const Point<dim> &p) {
-      Tensor<1, dim> value;
-      value[0] = 0.02 * std::exp(-40. * (p - 0.5 * Point<dim>::unit_vector(0)).norm_square());
-      return value;
-    });
-    body.op().distribute(u, 0.);
-    Vector forces(u), then(u);
-    body.op().unbalanced(forces, u, 0.);
-    const double whole = body.op().energy(u);
-    ASSERT_TRUE(body.op().widen_zone(u));
-    const double widened = body.op().energy(u);
-    EXPECT_NEAR(whole - widened, body.op().energy_released_by_joining(), 1e-12 * whole);
-    EXPECT_GT(body.elements->size().bonds, 0U);
-    EXPECT_FALSE(body.elements->bonds().zone_share() > 0.9);
-    ASSERT_GT(body.op().break_bonds(u, 0.1), 0U);
-    EXPECT_NEAR((whole - body.op().energy(u)) / body.op().released_energy(), 1., 1e-11);
-    // What broke joins nothing in vain, and nothing breaks twice.
-    body.op().mend_unbalanced(forces, u, 0.);
-    body.op().unbalanced(then, u, 0.);
-    const double size = then.linfty_norm();
-    then -= forces;
-    EXPECT_LT(then.linfty_norm(), 1e-12 * size);
-    EXPECT_EQ(body.op().break_bonds(u, 0.2), 0U);
+    check_following_zone(body, 0.02, 40., 0.9);
   }
 } // namespace
 
