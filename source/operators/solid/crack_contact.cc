@@ -29,6 +29,17 @@ namespace PeriDeal
     }
 
 
+    /** a. */
+    template <int dim>
+    double share_across(const Tensor<1, dim> &direction,
+                        const Tensor<1, dim> &normal,
+                        const Tensor<1, dim> &lean)
+    {
+      const double own = normal * direction;
+      return own > 0. ? own * own * (1. - lean * direction) : 0.;
+    }
+
+
     /** l, for lost bonds and a normal. */
     template <int dim>
     Tensor<1, dim> lean_of(const std::vector<FacingBond<dim>> &family, const Tensor<1, dim> &normal)
@@ -75,26 +86,41 @@ namespace PeriDeal
 
 
   template <int dim>
-  CrackContact<dim>::CrackContact(const FamilyOf &family_of,
-                                  const Layout   &nodes,
-                                  const Layout   &unknowns)
+  CrackContact<dim>::CrackContact(const FamilyOf   &family_of,
+                                  const Nodes<dim> &nodes,
+                                  const Layout     &layout)
     : family_of(family_of)
     , nodes(nodes)
-    , unknowns(unknowns)
+    , layout(layout)
     , normals(
         [this](const unsigned int node, std::vector<Bond> &bonds) { this->family_of(node, bonds); },
-        nodes,
-        unknowns)
+        layout)
+    , parted(normals.parted())
   {}
 
 
   template <int dim>
-  double CrackContact<dim>::share_across(const Tensor<1, dim> &direction,
-                                         const Tensor<1, dim> &normal,
-                                         const Tensor<1, dim> &lean) const
+  typename CrackContact<dim>::Face CrackContact<dim>::face(const unsigned int place) const
   {
-    const double own = normal * direction;
-    return own > 0. ? own * own * (1. - lean * direction) : 0.;
+    Face result{normals.normal(place), {}};
+    for (unsigned int d = 0; d < dim; ++d)
+      result.lean[d] = leans.local_element(dim * place + d);
+    return result;
+  }
+
+
+  /** Visit the lost bonds of a node: visit(end, direction, length). */
+  template <int dim>
+  template <typename Visit>
+  void CrackContact<dim>::for_each_end(const unsigned int place, const Visit &visit) const
+  {
+    const Point<dim> &at = nodes.position(parted.node(place));
+    for (const End &end : rows[place].ends)
+      {
+        const Tensor<1, dim> xi = nodes.position(end.neighbor) - at;
+        const double         x  = xi.norm();
+        visit(end, xi / x, x);
+      }
   }
 
 
@@ -121,58 +147,52 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename CrackContact<dim>::Row &CrackContact<dim>::row_of(const unsigned int node)
+  void CrackContact<dim>::make_row(const unsigned int place)
   {
-    const auto [place, is_new] = row_numbers.try_emplace(node, rows.size());
-    if (is_new)
-      {
-        rows.emplace_back();
-        rows.back().node = node;
-      }
-    return rows[place->second];
-  }
-
-
-  template <int dim>
-  void CrackContact<dim>::make_row(Row &row)
-  {
-    const unsigned int node  = row.node;
-    const double       scale = family_of(node, family);
+    Row         &row   = rows[place];
+    const double scale = family_of(parted.node(place), family);
     row.ends.clear();
     row.weight                   = 0.;
-    const Tensor<1, dim> normal  = normals.normal(node);
+    const Tensor<1, dim> normal  = normals.normal(place);
     const bool           presses = normal != Tensor<1, dim>() && !has_whole_bonds_across(normal);
     const Tensor<1, dim> lean    = presses ? lean_of(family, normal) : Tensor<1, dim>();
     constexpr double     some    = 0.01;
     double               squares = 0., all = 0.;
+    row.ends.reserve(
+      std::count_if(family.begin(), family.end(), [](const Bond &bond) { return bond.is_lost; }));
     for (const Bond &bond : family)
       if (bond.is_lost)
         {
-          const double         x = bond.xi.norm();
-          const Tensor<1, dim> d = bond.xi / x;
+          const Tensor<1, dim> d = bond.xi / bond.xi.norm();
           const double         a = presses ? share_across(d, normal, lean) : 0.;
           squares += bond.stiffness * a * a;
           all += bond.stiffness * std::pow(std::max(0., normal * d), 4);
-          row.ends.push_back({bond.neighbor, d, bond.stiffness, bond.stiffness * a, x});
+          row.ends.push_back({bond.neighbor, bond.stiffness});
         }
     if (squares > some * all) // else they lean to one side only
       row.weight = scale / squares;
     else
       row.touches = false;
     for (unsigned int c = 0; c < dim; ++c)
-      leans.local_element(dim * node + c) = lean[c];
-    find_strained(row);
+      leans.local_element(dim * place + c) = lean[c];
+    find_strained(place);
   }
 
 
   template <int dim>
-  void CrackContact<dim>::find_strained(Row &row) const
+  void CrackContact<dim>::find_strained(const unsigned int place)
   {
-    row.strained = 0.;
-    for (const End &end : row.ends)
-      if (strain_at)
-        row.strained +=
-          0.5 * end.factor * end.length * (strain_at(row.node) + strain_at(end.neighbor));
+    double sum = 0.;
+    if (strain_at)
+      {
+        const Face   own       = face(place);
+        const double strain_of = strain_at(parted.node(place));
+        for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double x) {
+          sum += 0.5 * end.stiffness * share_across(d, own.normal, own.lean) * x *
+                 (strain_of + strain_at(end.neighbor));
+        });
+      }
+    rows[place].strained = sum;
   }
 
 
@@ -181,43 +201,40 @@ namespace PeriDeal
   {
     const bool touch =
       std::any_of(rows.begin(), rows.end(), [](const Row &row) { return row.touches; });
-    double any[2] = {rows.empty() ? 0. : 1., touch ? 1. : 0.};
-    Utilities::MPI::max(any, unknowns->get_mpi_communicator(), any);
-    any_rows   = any[0] > 0.;
-    any_closed = any[1] > 0.;
+    any_closed = Utilities::MPI::max(touch ? 1 : 0, layout->get_mpi_communicator()) > 0;
   }
 
 
   template <int dim>
   double CrackContact<dim>::set_rows(const std::vector<unsigned int> &of_nodes, const Vector *u)
   {
+    std::vector<double> before; // energies, of the normals until now
+    for (unsigned int place = 0; u && place < rows.size(); ++place)
+      before.push_back(energy_of(place, u->begin()));
     const std::vector<unsigned int> changed = normals.renew(of_nodes);
-    double                          flag    = changed.empty() ? 0. : 1.;
-    flag = Utilities::MPI::max(flag, unknowns->get_mpi_communicator());
-    if (!any_rows && flag == 0.)
+    if (parted.empty())
       return 0.;
-    if (leans.size() == 0)
-      {
-        leans.reinit(unknowns);
-        pressures.reinit(nodes);
-      }
+    before.resize(parted.n_owned());
+    rows.resize(parted.n_owned());
+    parted.fit_vectors(leans);
+    parted.fit_scalars(pressures);
     double     released = 0.;
-    const auto renew    = [&](Row &row) {
-      released += u ? energy_of(row, u->begin()) : 0.;
-      make_row(row);
+    const auto renew    = [&](const unsigned int place) {
+      make_row(place);
       if (u)
-        row.touches = row.weight > 0. && is_closed(row, u->begin());
-      released -= u ? energy_of(row, u->begin()) : 0.;
+        rows[place].touches = rows[place].weight > 0. && is_closed(place, u->begin());
+      released += u ? before[place] - energy_of(place, u->begin()) : 0.;
     };
     for (const unsigned int i : of_nodes) // those that are whole again
-      if (const auto found = row_numbers.find(i);
-          found != row_numbers.end() && !std::binary_search(changed.begin(), changed.end(), i))
+      if (const unsigned int place = parted.place(i);
+          place != numbers::invalid_unsigned_int &&
+          !std::binary_search(changed.begin(), changed.end(), i))
         {
-          renew(rows[found->second]);
-          pressures.local_element(i) = 0.;
+          renew(place);
+          pressures.local_element(place) = 0.;
         }
     for (const unsigned int i : changed)
-      renew(row_of(i));
+      renew(parted.place(i));
     leans.update_ghost_values();
     find_any();
     return released;
@@ -227,7 +244,7 @@ namespace PeriDeal
   template <int dim>
   void CrackContact<dim>::renew()
   {
-    std::vector<unsigned int> owned(nodes->locally_owned_size());
+    std::vector<unsigned int> owned(layout->locally_owned_size());
     std::iota(owned.begin(), owned.end(), 0);
     set_rows(owned);
   }
@@ -238,7 +255,7 @@ namespace PeriDeal
   {
     const WithGhosts ghosts(u);
     const double     released = set_rows(of_nodes, &u);
-    return any_rows ? Utilities::MPI::sum(released, unknowns->get_mpi_communicator()) : 0.;
+    return parted.empty() ? 0. : Utilities::MPI::sum(released, layout->get_mpi_communicator());
   }
 
 
@@ -246,42 +263,51 @@ namespace PeriDeal
   void CrackContact<dim>::set_strains(const std::function<double(const unsigned int)> &at)
   {
     strain_at = at;
-    for (Row &row : rows)
-      find_strained(row);
+    for (unsigned int place = 0; place < rows.size(); ++place)
+      find_strained(place);
   }
 
 
   template <int dim>
-  double CrackContact<dim>::gap(const Row &row, const double *u) const
+  double CrackContact<dim>::gap(const unsigned int place, const double *u) const
   {
-    double sum = -row.strained;
-    for (const End &end : row.ends)
-      sum += end.factor * change_along(end.direction, u, row.node, end.neighbor);
+    const unsigned int node = parted.node(place);
+    const Face         own  = face(place);
+    double             sum  = -rows[place].strained;
+    for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
+      sum += end.stiffness * share_across(d, own.normal, own.lean) *
+             change_along(d, u, node, end.neighbor);
+    });
     return sum;
   }
 
 
   template <int dim>
-  double CrackContact<dim>::size_of_terms(const Row &row, const double *u) const
+  double CrackContact<dim>::size_of_terms(const unsigned int place, const double *u) const
   {
-    double size = std::abs(row.strained);
-    for (const End &end : row.ends)
-      for (unsigned int d = 0; d < dim; ++d)
-        size += std::abs(end.factor * end.direction[d]) *
-                (std::abs(u[dim * row.node + d]) + std::abs(u[dim * end.neighbor + d]));
+    const unsigned int node = parted.node(place);
+    const Face         own  = face(place);
+    double             size = std::abs(rows[place].strained);
+    for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
+      const double factor = end.stiffness * share_across(d, own.normal, own.lean);
+      for (unsigned int c = 0; c < dim; ++c)
+        size += std::abs(factor * d[c]) *
+                (std::abs(u[dim * node + c]) + std::abs(u[dim * end.neighbor + c]));
+    });
     return size;
   }
 
 
   template <int dim>
-  bool CrackContact<dim>::is_closed(const Row &row, const double *u) const
+  bool CrackContact<dim>::is_closed(const unsigned int place, const double *u) const
   {
     // Of displacements that a solver has found to its tolerance: else nodes would flutter.
-    constexpr double noise = 1e-9;
-    const double     now   = gap(row, u);
-    if ((now < 0.) == row.touches || std::abs(now) > noise * size_of_terms(row, u))
+    constexpr double noise   = 1e-9;
+    const double     now     = gap(place, u);
+    const bool       touches = rows[place].touches;
+    if ((now < 0.) == touches || std::abs(now) > noise * size_of_terms(place, u))
       return now < 0.;
-    return row.touches;
+    return touches;
   }
 
 
@@ -289,20 +315,21 @@ namespace PeriDeal
   bool CrackContact<dim>::update(const Vector &u, double &gained)
   {
     gained = 0.; // it begins and ends at gaps of 0
-    if (!any_rows)
+    if (parted.empty())
       return false;
     const WithGhosts ghosts(u);
     double           flags[] = {0., 0.};
-    for (Row &row : rows)
+    for (unsigned int place = 0; place < rows.size(); ++place)
       {
-        const bool touches = row.weight > 0. && is_closed(row, u.begin());
+        Row       &row     = rows[place];
+        const bool touches = row.weight > 0. && is_closed(place, u.begin());
         if (touches != row.touches)
           flags[0] = 1.;
         if (touches)
           flags[1] = 1.;
         row.touches = touches;
       }
-    Utilities::MPI::max(flags, unknowns->get_mpi_communicator(), flags);
+    Utilities::MPI::max(flags, layout->get_mpi_communicator(), flags);
     any_closed = flags[1] > 0.;
     return flags[0] > 0.;
   }
@@ -312,32 +339,36 @@ namespace PeriDeal
   void CrackContact<dim>::find_pressures(const Vector &u, const bool strained) const
   {
     const WithGhosts ghosts(u);
-    for (const Row &row : rows)
-      pressures.local_element(row.node) =
-        row.touches ? row.weight * (gap(row, u.begin()) + (strained ? 0. : row.strained)) : 0.;
+    for (unsigned int place = 0; place < rows.size(); ++place)
+      {
+        const Row &row = rows[place];
+        pressures.local_element(place) =
+          row.touches ? row.weight * (gap(place, u.begin()) + (strained ? 0. : row.strained)) : 0.;
+      }
     pressures.update_ghost_values();
   }
 
 
   /** Of K u, from what presses at both ends of the node's lost bonds. */
   template <int dim>
-  Tensor<1, dim> CrackContact<dim>::force_of(const Row &row) const
+  Tensor<1, dim> CrackContact<dim>::force_of(const unsigned int place) const
   {
     Tensor<1, dim> force;
-    const double   own = pressures.local_element(row.node);
-    for (const End &end : row.ends)
-      {
-        double size = own * end.factor;
-        if (const double other = pressures.local_element(end.neighbor); other != 0.)
-          {
-            Tensor<1, dim> lean;
-            for (unsigned int d = 0; d < dim; ++d)
-              lean[d] = leans.local_element(dim * end.neighbor + d);
-            size += other * end.stiffness *
-                    share_across(-1. * end.direction, normals.normal(end.neighbor), lean);
-          }
-        force -= size * end.direction;
-      }
+    const Face     own      = face(place);
+    const double   pressure = pressures.local_element(place);
+    for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
+      double             size  = 0.;
+      const unsigned int other = parted.place(end.neighbor);
+      if (pressure != 0.)
+        size += pressure * end.stiffness * share_across(d, own.normal, own.lean);
+      if (other != numbers::invalid_unsigned_int && pressures.local_element(other) != 0.)
+        {
+          const Face facing = face(other);
+          size += pressures.local_element(other) * end.stiffness *
+                  share_across(-1. * d, facing.normal, facing.lean);
+        }
+      force -= size * d;
+    });
     return force;
   }
 
@@ -347,8 +378,8 @@ namespace PeriDeal
   {
     if (any_closed)
       find_pressures(u, true);
-    for (const Row &row : rows)
-      row.force = any_closed ? force_of(row) : Tensor<1, dim>();
+    for (unsigned int place = 0; place < rows.size(); ++place)
+      rows[place].force = any_closed ? force_of(place) : Tensor<1, dim>();
     add_last_forces(y, multiple);
   }
 
@@ -359,11 +390,11 @@ namespace PeriDeal
     if (!any_closed)
       return;
     find_pressures(x, false);
-    for (const Row &row : rows)
+    for (unsigned int place = 0; place < rows.size(); ++place)
       {
-        const Tensor<1, dim> force = force_of(row);
+        const Tensor<1, dim> force = force_of(place);
         for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * row.node + d) += force[d];
+          y.local_element(dim * parted.node(place) + d) += force[d];
       }
   }
 
@@ -371,48 +402,48 @@ namespace PeriDeal
   template <int dim>
   void CrackContact<dim>::add_last_forces(Vector &y, const double multiple) const
   {
-    for (const Row &row : rows)
+    for (unsigned int place = 0; place < rows.size(); ++place)
       for (unsigned int d = 0; d < dim; ++d)
-        y.local_element(dim * row.node + d) += multiple * row.force[d];
+        y.local_element(dim * parted.node(place) + d) += multiple * rows[place].force[d];
   }
 
 
   template <int dim>
-  double CrackContact<dim>::energy_of(const Row &row, const double *u) const
+  double CrackContact<dim>::energy_of(const unsigned int place, const double *u) const
   {
-    const double now = row.weight > 0. ? std::min(0., gap(row, u)) : 0.;
-    return 0.5 * row.weight * now * now;
+    const double weight = rows[place].weight, now = weight > 0. ? std::min(0., gap(place, u)) : 0.;
+    return 0.5 * weight * now * now;
   }
 
 
   template <int dim>
   double CrackContact<dim>::energy(const Vector &u) const
   {
-    if (!any_rows)
+    if (parted.empty())
       return 0.;
     const WithGhosts ghosts(u);
     // In the order of nodes: the same digits in a run that is resumed.
     std::vector<std::pair<unsigned int, double>> energies;
-    for (const Row &row : rows)
-      if (const double energy = energy_of(row, u.begin()); energy > 0.)
-        energies.emplace_back(row.node, energy);
+    for (unsigned int place = 0; place < rows.size(); ++place)
+      if (const double energy = energy_of(place, u.begin()); energy > 0.)
+        energies.emplace_back(parted.node(place), energy);
     std::sort(energies.begin(), energies.end());
     double sum = 0.;
     for (const auto &[node, energy] : energies)
       sum += energy;
-    return Utilities::MPI::sum(sum, unknowns->get_mpi_communicator());
+    return Utilities::MPI::sum(sum, layout->get_mpi_communicator());
   }
 
 
   template <int dim>
   void CrackContact<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
-    Vector nodal(nodes);
-    for (const Row &row : rows)
-      nodal.local_element(row.node) = row.touches ? 1. : 0.;
+    Vector nodal(layout);
+    for (unsigned int place = 0; place < rows.size(); ++place)
+      nodal.local_element(parted.node(place)) = rows[place].touches ? 1. : 0.;
     archive.exchange("touching", nodal, keys);
-    for (Row &row : rows)
-      row.touches = row.weight > 0. && nodal.local_element(row.node) > 0.;
+    for (unsigned int place = 0; place < rows.size(); ++place)
+      rows[place].touches = rows[place].weight > 0. && nodal.local_element(parted.node(place)) > 0.;
     find_any();
   }
 
@@ -420,9 +451,9 @@ namespace PeriDeal
   template <int dim>
   std::size_t CrackContact<dim>::memory_consumption() const
   {
-    std::size_t sum = 0;
+    std::size_t sum = rows.capacity() * sizeof(Row);
     for (const Row &row : rows)
-      sum += sizeof(row) + row.ends.capacity() * sizeof(End);
+      sum += row.ends.capacity() * sizeof(End);
     return sum + leans.memory_consumption() + pressures.memory_consumption() +
            normals.memory_consumption();
   }

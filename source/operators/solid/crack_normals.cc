@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/symmetric_tensor.h>
 
 #include <perideal/operators/solid/crack_normals.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace PeriDeal
 {
@@ -15,20 +15,20 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    Tensor<1, dim> value_at(const Vector &v, const unsigned int node)
+    Tensor<1, dim> value_at(const Vector &v, const unsigned int place)
     {
       Tensor<1, dim> value;
       for (unsigned int d = 0; d < dim; ++d)
-        value[d] = v.local_element(dim * node + d);
+        value[d] = v.local_element(dim * place + d);
       return value;
     }
 
 
     template <int dim>
-    void set_value(Vector &v, const unsigned int node, const Tensor<1, dim> &value)
+    void set_value(Vector &v, const unsigned int place, const Tensor<1, dim> &value)
     {
       for (unsigned int d = 0; d < dim; ++d)
-        v.local_element(dim * node + d) = value[d];
+        v.local_element(dim * place + d) = value[d];
     }
 
 
@@ -60,69 +60,54 @@ namespace PeriDeal
 
 
   template <int dim>
-  CrackNormals<dim>::CrackNormals(const FamilyOf &family_of,
-                                  const Layout   &nodes,
-                                  const Layout   &unknowns)
+  CrackNormals<dim>::CrackNormals(const FamilyOf &family_of, const Layout &nodes)
     : family_of(family_of)
-    , nodes(nodes)
-    , unknowns(unknowns)
+    , nodes(nodes, dim)
   {}
-
-
-  /** Once bonds are lost; returns whether they are. */
-  template <int dim>
-  bool CrackNormals<dim>::allocate(const std::vector<unsigned int> &of_nodes)
-  {
-    if (marks.size() > 0)
-      return true;
-    const bool any = std::any_of(of_nodes.begin(), of_nodes.end(), [&](const unsigned int i) {
-      family_of(i, family);
-      return !family.empty();
-    });
-    if (Utilities::MPI::max(any ? 1 : 0, nodes->get_mpi_communicator()) == 0)
-      return false;
-    directions.reinit(unknowns);
-    normals.reinit(unknowns);
-    marks.reinit(nodes);
-    return true;
-  }
 
 
   /** Owned nodes that have lost bonds and are among these, or have one of them in their family. */
   template <int dim>
-  std::vector<unsigned int> CrackNormals<dim>::beside(const std::vector<unsigned int> &of_nodes)
+  std::vector<unsigned int> CrackNormals<dim>::beside(
+    const std::vector<unsigned int> &of_nodes) const
   {
-    marks = 0.;
-    marks.zero_out_ghost_values();
+    Vector marks;
+    nodes.fit_scalars(marks);
+    const auto mark = [&](const unsigned int i) {
+      if (const unsigned int place = nodes.place(i); place != numbers::invalid_unsigned_int)
+        marks.local_element(place) += 1.;
+    };
     for (const unsigned int i : of_nodes)
-      if (const auto found = parted.find(i); found != parted.end())
+      if (const unsigned int place = nodes.place(i);
+          place != numbers::invalid_unsigned_int && !neighbors[place].empty())
         {
-          marks.local_element(i) += 1.;
-          for (const unsigned int j : found->second)
-            marks.local_element(j) += 1.;
+          mark(i);
+          std::for_each(neighbors[place].begin(), neighbors[place].end(), mark);
         }
     marks.compress(VectorOperation::add);
     std::vector<unsigned int> list;
-    for (const auto &[i, neighbors] : parted)
-      if (marks.local_element(i) > 0.)
-        list.push_back(i);
+    for (unsigned int place = 0; place < nodes.n_owned(); ++place)
+      if (marks.local_element(place) > 0. && !neighbors[place].empty())
+        list.push_back(nodes.node(place));
+    std::sort(list.begin(), list.end());
     return list;
   }
 
 
   template <int dim>
-  Tensor<1, dim> CrackNormals<dim>::smoothed(const unsigned int node) const
+  Tensor<1, dim> CrackNormals<dim>::smoothed(const unsigned int place) const
   {
     constexpr double     most = 0.75; // of all, about the normal
-    const Tensor<1, dim> own  = value_at<dim>(directions, node);
+    const Tensor<1, dim> own  = value_at<dim>(directions, place);
     if (own == Tensor<1, dim>())
       return own;
     SymmetricTensor<2, dim> sum = symmetrize(outer_product(own, own));
-    for (const unsigned int j : parted.at(node))
-      {
-        const Tensor<1, dim> p = value_at<dim>(directions, j);
-        sum += symmetrize(outer_product(p, p));
-      }
+    for (const unsigned int j : neighbors[place])
+      if (const unsigned int other = nodes.place(j); other != numbers::invalid_unsigned_int)
+        {
+          const Tensor<1, dim> p = value_at<dim>(directions, other);
+          sum += symmetrize(outer_product(p, p));
+        }
     const auto [value, direction] = eigenvectors(sum, SymmetricTensorEigenvectorMethod::jacobi)[0];
     if (value < most * trace(sum))
       return Tensor<1, dim>();
@@ -130,51 +115,77 @@ namespace PeriDeal
   }
 
 
+  /** Find the directions of owned nodes, whose ghosts are set. */
   template <int dim>
-  std::vector<unsigned int> CrackNormals<dim>::renew(const std::vector<unsigned int> &of_nodes)
+  void CrackNormals<dim>::find_lost(const std::vector<unsigned int> &of_nodes)
   {
-    if (!allocate(of_nodes))
-      return {};
+    struct Lost
+    {
+      unsigned int              node;
+      Tensor<1, dim>            direction;
+      std::vector<unsigned int> neighbors;
+    };
+    std::vector<Lost>         all;
+    std::vector<unsigned int> lacking;
     for (const unsigned int i : of_nodes)
       {
         family_of(i, family);
-        if (family.empty())
-          parted.erase(i);
-        else
-          {
-            std::vector<unsigned int> &neighbors = parted[i];
-            neighbors.clear();
-            for (const FacingBond<dim> &bond : family)
-              neighbors.push_back(bond.neighbor);
-          }
-        set_value(directions, i, direction_of(family));
+        if (family.empty() && nodes.place(i) == numbers::invalid_unsigned_int)
+          continue;
+        lacking.push_back(i);
+        all.push_back({i, direction_of(family), {}});
+        all.back().neighbors.reserve(family.size());
+        for (const FacingBond<dim> &bond : family)
+          all.back().neighbors.push_back(bond.neighbor);
+      }
+    nodes.add(lacking);
+    if (nodes.empty())
+      return;
+    neighbors.resize(nodes.n_owned());
+    nodes.fit_vectors(directions);
+    nodes.fit_vectors(normals);
+    for (Lost &lost : all)
+      {
+        const unsigned int place = nodes.place(lost.node);
+        neighbors[place]         = std::move(lost.neighbors);
+        set_value(directions, place, lost.direction);
       }
     directions.update_ghost_values();
+  }
+
+
+  template <int dim>
+  std::vector<unsigned int> CrackNormals<dim>::renew(const std::vector<unsigned int> &of_nodes)
+  {
+    find_lost(of_nodes);
+    if (nodes.empty())
+      return {};
     const std::vector<unsigned int> changed = beside(of_nodes);
     for (const unsigned int i : of_nodes) // those that are whole again
-      set_value(normals, i, Tensor<1, dim>());
+      if (const unsigned int place = nodes.place(i); place != numbers::invalid_unsigned_int)
+        set_value(normals, place, Tensor<1, dim>());
     for (const unsigned int i : changed)
-      set_value(normals, i, smoothed(i));
+      set_value(normals, nodes.place(i), smoothed(nodes.place(i)));
     normals.update_ghost_values();
     return changed;
   }
 
 
   template <int dim>
-  Tensor<1, dim> CrackNormals<dim>::normal(const unsigned int node) const
+  Tensor<1, dim> CrackNormals<dim>::normal(const unsigned int place) const
   {
-    return value_at<dim>(normals, node);
+    return value_at<dim>(normals, place);
   }
 
 
   template <int dim>
   std::size_t CrackNormals<dim>::memory_consumption() const
   {
-    std::size_t lists = 0;
-    for (const auto &entry : parted)
-      lists += sizeof(entry) + entry.second.capacity() * sizeof(unsigned int);
-    return lists + directions.memory_consumption() + normals.memory_consumption() +
-           marks.memory_consumption();
+    std::size_t lists = neighbors.capacity() * sizeof(neighbors[0]);
+    for (const std::vector<unsigned int> &list : neighbors)
+      lists += list.capacity() * sizeof(unsigned int);
+    return lists + nodes.memory_consumption() + directions.memory_consumption() +
+           normals.memory_consumption();
   }
 
 

@@ -70,7 +70,7 @@ namespace PeriDeal
     this->keep_constant_loads();
     if (zone_bonds && body.coupling.exchanges() && !body.cracks.on_faces() &&
         body.elasticity.contact && this->may_part())
-      this->set_contact(zone_bonds->make_contact(nodes, unknowns));
+      this->set_contact(zone_bonds->make_contact(nodes));
   }
 
 

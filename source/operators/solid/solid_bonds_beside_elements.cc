@@ -304,15 +304,14 @@ namespace PeriDeal
 
   template <int dim>
   std::unique_ptr<CrackContact<dim>> SolidBondsBesideElements<dim>::make_contact(
-    const typename CrackContact<dim>::Layout &layout,
-    const typename CrackContact<dim>::Layout &unknowns) const
+    const typename CrackContact<dim>::Layout &layout) const
   {
     return std::make_unique<CrackContact<dim>>(
       [this](const unsigned int node, std::vector<FacingBond<dim>> &bonds) {
         return contact_family(node, bonds);
       },
-      layout,
-      unknowns);
+      nodes(),
+      layout);
   }
 
 

@@ -98,15 +98,14 @@ namespace PeriDeal
     const SolidBonds<dim>                                    &solid,
     const BondState                                          &state,
     const BodyParameters<dim>                                &body,
-    const std::shared_ptr<const Utilities::MPI::Partitioner> &nodes,
-    const std::shared_ptr<const Utilities::MPI::Partitioner> &unknowns)
+    const std::shared_ptr<const Utilities::MPI::Partitioner> &layout)
   {
     return std::make_unique<CrackContact<dim>>(
       [&](const unsigned int node, std::vector<FacingBond<dim>> &bonds) {
         return family_of(solid, state, body, node, bonds);
       },
-      nodes,
-      unknowns);
+      solid.families.nodes(),
+      layout);
   }
 
 
@@ -137,7 +136,6 @@ namespace PeriDeal
     const SolidBonds<dim> &,                                            \
     const BondState &,                                                  \
     const BodyParameters<dim> &,                                        \
-    const std::shared_ptr<const Utilities::MPI::Partitioner> &,         \
     const std::shared_ptr<const Utilities::MPI::Partitioner> &);        \
   template std::unique_ptr<SolidContact> make_short_range_contact<dim>( \
     const SolidBonds<dim> &,                                            \

@@ -15,15 +15,14 @@ namespace PeriDeal
   /**
    * CrackContact of peridynamics in the whole body, across bonds that cracks cut or that have
    * broken. All have to outlive it.
-   * @param nodes, unknowns layouts; ghosts are all neighbours
+   * @param layout of the nodes; ghosts are all neighbours
    */
   template <int dim>
   std::unique_ptr<SolidContact> make_crack_contact(
     const SolidBonds<dim>                                            &solid,
     const BondState                                                  &state,
     const BodyParameters<dim>                                        &body,
-    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &nodes,
-    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &unknowns);
+    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &layout);
 
   /** ShortRangeContact of full kinematics. Both have to outlive it. Collective. */
   template <int dim>

@@ -44,8 +44,7 @@ namespace PeriDeal
     if (!body.elasticity.contact)
       return;
     if (!nonlinear() && this->may_part())
-      this->set_contact(
-        make_crack_contact(solid, breakage.broken_state(), body, this->nodes, this->unknowns));
+      this->set_contact(make_crack_contact(solid, breakage.broken_state(), body, this->nodes));
     if (nonlinear() && !body.elasticity.is_static())
       this->set_contact(make_short_range_contact(solid, body));
   }

@@ -5,11 +5,11 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <perideal/mesh/nodes.h>
 #include <perideal/operators/solid/crack_normals.h>
 #include <perideal/operators/solid/solid_contact.h>
 
 #include <functional>
-#include <unordered_map>
 #include <vector>
 
 namespace PeriDeal
@@ -30,6 +30,10 @@ namespace PeriDeal
    *
    * Forces are linear from one update() to the next. They are sums in the order of families: the
    * same digits on any number of processes.
+   *
+   * Only nodes that have lost bonds take room, and of a lost bond no more than where it leads and
+   * its stiffness: bodies have far more nodes than crack faces, and those of a running crack are in
+   * every step.
    */
   template <int dim>
   class CrackContact : public SolidContact
@@ -44,8 +48,11 @@ namespace PeriDeal
      */
     using FamilyOf = std::function<double(const unsigned int, std::vector<Bond> &)>;
 
-    /** @param nodes, unknowns layouts; ghosts are all neighbours */
-    CrackContact(const FamilyOf &family_of, const Layout &nodes, const Layout &unknowns);
+    /**
+     * @param nodes to which bonds lead; they have to outlive this object
+     * @param layout of these nodes; ghosts are all neighbours
+     */
+    CrackContact(const FamilyOf &family_of, const Nodes<dim> &nodes, const Layout &layout);
 
     bool   update(const Vector &u, double &gained) override;
     double change(const std::vector<unsigned int> &of_nodes, const Vector &u) override;
@@ -63,24 +70,27 @@ namespace PeriDeal
     std::size_t memory_consumption() const override;
 
   private:
+    /** Of a bond that is lost. */
     struct End
     {
-      unsigned int           neighbor;
-      dealii::Tensor<1, dim> direction; // d
-      double                 stiffness; // k
-      double                 factor;    // k a; 0: of no effect on this node's g
-      double                 length;    // x
+      unsigned int neighbor;
+      double       stiffness; // k
     };
 
-    /** Of an owned node that has lost bonds. */
+    /** Of an owned node that has lost bonds, or had. */
     struct Row
     {
-      unsigned int                   node;
       std::vector<End>               ends;
       double                         weight   = 0.; // c/sum of k a^2; 0: no contact
       double                         strained = 0.; // what thermal strains have of g
       bool                           touches  = false;
       mutable dealii::Tensor<1, dim> force; // on the node, at last
+    };
+
+    /** What the faces of a node have for directions, by its place. */
+    struct Face
+    {
+      dealii::Tensor<1, dim> normal, lean;
     };
 
     /**
@@ -89,30 +99,31 @@ namespace PeriDeal
      * nodes of this process.
      */
     double set_rows(const std::vector<unsigned int> &of_nodes, const Vector *u = nullptr);
-    Row   &row_of(const unsigned int node);
-    void   make_row(Row &row);
+    void   make_row(const unsigned int place);
     bool   has_whole_bonds_across(const dealii::Tensor<1, dim> &normal) const;
-    void   find_strained(Row &row) const;
-    double share_across(const dealii::Tensor<1, dim> &direction,
-                        const dealii::Tensor<1, dim> &normal,
-                        const dealii::Tensor<1, dim> &lean) const;
-    double gap(const Row &row, const double *u) const;
-    double size_of_terms(const Row &row, const double *u) const;
-    bool   is_closed(const Row &row, const double *u) const;
-    double energy_of(const Row &row, const double *u) const;
+    void   find_strained(const unsigned int place);
+    Face   face(const unsigned int place) const;
+    double gap(const unsigned int place, const double *u) const;
+    double size_of_terms(const unsigned int place, const double *u) const;
+    bool   is_closed(const unsigned int place, const double *u) const;
+    double energy_of(const unsigned int place, const double *u) const;
     void   find_pressures(const Vector &u, const bool strained) const;
-    dealii::Tensor<1, dim> force_of(const Row &row) const;
+    dealii::Tensor<1, dim> force_of(const unsigned int place) const;
     void                   find_any();
 
-    const FamilyOf                                 family_of;
-    const Layout                                   nodes, unknowns;
-    CrackNormals<dim>                              normals;
-    std::function<double(const unsigned int)>      strain_at;
-    Vector                                         leans;     // l; once any is lost
-    mutable Vector                                 pressures; // c g/sum of k a^2 where nodes touch
-    std::vector<Row>                               rows;
-    std::unordered_map<unsigned int, unsigned int> row_numbers; // by the owned node
-    bool                                           any_rows = false, any_closed = false;
-    std::vector<Bond>                              family; // of the node that is looked at
+    template <typename Visit>
+    void for_each_end(const unsigned int place, const Visit &visit) const;
+
+    const FamilyOf                            family_of;
+    const Nodes<dim>                         &nodes;
+    const Layout                              layout;
+    CrackNormals<dim>                         normals;
+    const NodeSubset                         &parted; // that have rows
+    std::function<double(const unsigned int)> strain_at;
+    Vector                                    leans;     // l
+    mutable Vector                            pressures; // c g/sum of k a^2 where nodes touch
+    std::vector<Row>                          rows;      // by place
+    bool                                      any_closed = false;
+    std::vector<Bond>                         family; // of the node that is looked at
   };
 } // namespace PeriDeal

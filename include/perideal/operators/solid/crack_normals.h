@@ -6,10 +6,9 @@
 #include <deal.II/base/tensor.h>
 
 #include <perideal/base/types.h>
+#include <perideal/operators/parts/node_subset.h>
 
 #include <functional>
-#include <map>
-#include <memory>
 #include <vector>
 
 namespace PeriDeal
@@ -40,7 +39,7 @@ namespace PeriDeal
   class CrackNormals
   {
   public:
-    using Layout = std::shared_ptr<const dealii::Utilities::MPI::Partitioner>;
+    using Layout = NodeSubset::Layout;
 
     /**
      * The bonds of an owned node, whole ones included, in the order of all processes; none at all
@@ -48,8 +47,8 @@ namespace PeriDeal
      */
     using FamilyOf = std::function<void(const unsigned int, std::vector<FacingBond<dim>> &)>;
 
-    /** @param nodes, unknowns layouts; ghosts are all neighbours */
-    CrackNormals(const FamilyOf &family_of, const Layout &nodes, const Layout &unknowns);
+    /** @param nodes layout; ghosts are all neighbours */
+    CrackNormals(const FamilyOf &family_of, const Layout &nodes);
 
     /**
      * Renew normals where these owned nodes have lost or got bonds. Returns the owned nodes whose
@@ -58,20 +57,26 @@ namespace PeriDeal
      */
     std::vector<unsigned int> renew(const std::vector<unsigned int> &of_nodes);
 
-    /** Zero where there is none; ghosts are known, too. Only once something is lost. */
-    dealii::Tensor<1, dim> normal(const unsigned int node) const;
+    /** Nodes that have lost bonds, or had. */
+    const NodeSubset &parted() const
+    {
+      return nodes;
+    }
+
+    /** Of the node at a place of parted(); ghosts are known, too. Zero where there is none. */
+    dealii::Tensor<1, dim> normal(const unsigned int place) const;
 
     std::size_t memory_consumption() const;
 
   private:
-    bool                      allocate(const std::vector<unsigned int> &of_nodes);
-    std::vector<unsigned int> beside(const std::vector<unsigned int> &of_nodes);
-    dealii::Tensor<1, dim>    smoothed(const unsigned int node) const;
+    void                      find_lost(const std::vector<unsigned int> &of_nodes);
+    std::vector<unsigned int> beside(const std::vector<unsigned int> &of_nodes) const;
+    dealii::Tensor<1, dim>    smoothed(const unsigned int place) const;
 
-    const FamilyOf family_of;
-    const Layout   nodes, unknowns;
-    Vector         directions, normals, marks;                // p/|p|, n; once any is lost
-    std::map<unsigned int, std::vector<unsigned int>> parted; // neighbours of nodes that lack bonds
-    std::vector<FacingBond<dim>>                      family; // of the node that is looked at
+    const FamilyOf                         family_of;
+    NodeSubset                             nodes;
+    Vector                                 directions, normals; // p/|p|, n
+    std::vector<std::vector<unsigned int>> neighbors; // by place; none: all bonds are whole
+    std::vector<FacingBond<dim>>           family;    // of the node that is looked at
   };
 } // namespace PeriDeal

@@ -129,10 +129,9 @@ namespace PeriDeal
                        const CrackSideFactors &factors,
                        const ThermalStrain    &strain) const;
 
-    /** Across the bonds that are broken or cut; this has to outlive it. Arguments as there. */
+    /** Across the bonds that are broken or cut; this has to outlive it. Layout as there. */
     std::unique_ptr<CrackContact<dim>> make_contact(
-      const typename CrackContact<dim>::Layout &nodes,
-      const typename CrackContact<dim>::Layout &unknowns) const;
+      const typename CrackContact<dim>::Layout &layout) const;
 
     /** Mark owned nodes with broken bonds, and add what the others give to the trace. */
     void add_to(CrackSideFactors::Sums &sums) const;
