@@ -22,7 +22,10 @@ namespace PeriDeal
 
   void BreakingMotion::choose_step()
   {
-    step = share * 2. / std::sqrt(op.spectrum().sharp);
+    const double largest = op.spectrum().sharp;
+    if (!(largest > 0.)) // nothing is bonded any more
+      return;
+    step = share * 2. / std::sqrt(largest);
     // Bonds shall break at the same step on any number of processes.
     const double unit = std::pow(10., std::floor(std::log10(step)) - 3.);
     step              = std::floor(step / unit) * unit;
@@ -49,14 +52,16 @@ namespace PeriDeal
   {
     constexpr double damping    = 0.011; // rate times stable step: a wave passes a horizon in two
     constexpr unsigned int wait = 54;    // stable steps without a break
+    velocity                    = 0.;
+    damped                      = 0.;
     if (step == 0.)
       choose_step();
+    if (step == 0.)
+      return 0;
     const double       half = 0.5 * step, slows = 0.5 * damping * share; // rate times half a step
     const unsigned int n_own   = velocity.locally_owned_size();
     const unsigned int n_quiet = std::lround(wait / share);
-    velocity                   = 0.;
-    damped                     = 0.;
-    unsigned int n             = 0;
+    unsigned int       n       = 0;
     op.update_contact(u);
     op.residual(residual, u, t);
     for (unsigned int quiet = 0; quiet < n_quiet; ++n)

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bonds that break: strength against Griffith, energies, motion, numbers of processes.
 
-    fracture.py plate | beside | cantilever | block | bend | mesh | motion | steps | ranks | oblique | scatter
+    fracture.py plate | beside | cantilever | block | bend | mesh | motion | steps | symmetry | ranks | oblique | scatter
     fracture.py fine_plate | fine_block | fine_motion      the scenes on their own lattices; the others take one of half the cells a side
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
@@ -233,11 +233,31 @@ def steps():
     energy = run.model(PD)["energy balance"]
     check(energy[BROKEN] > 50 and energy["released"] > 0, f"bonds break in motion: {energy}")
     check_less(abs(energy["imbalance"]) / energy["released"], 1e-8, "newmark, moving grips: energy imbalance over energy released")
+    # All bonds of a bar in even tension are as stretched: none is left, and nothing moves.
+    bar = {**QUIET, "Models": PD, "Domain/Cells": "30", "Material/Fracture energy": "0.01", "Boundary conditions/Displacement": "left: 0; right: 0.05*t", "Boundary conditions/Traction": "",
+           "Time/Time step": "0.1", "Time/End time": "1"}
+    run = run_scene("prm/elasticity/bar_1d.prm", bar)
+    check(run.model(PD)["energy balance"][BROKEN] == 30 + 29 + 28, f"a bar in even tension: {run.model(PD)['energy balance'][BROKEN]} of 87 bonds broken")
     pulled = {**COARSE, "Boundary conditions/Displacement": "bottom: 0, 0", "Boundary conditions/Traction": "top: 0, 4*t"}
     run = run_scene("prm/fracture/centre_crack.prm", pulled, expect_error=True)
     check_message(run, "No equilibrium was found at t =", "bonds had broken", "'Displacement'", "'Solver = dynamics'")
     check(run.summary["status"] == "diverged" and run.summary["message"] in run.stderr, f"the run's end: {run.summary['status']}")
     check(history(run, "force on top in y")[-1][1] > 0.5, "the load that the plate bore")
+
+
+def symmetry():
+    """A quarter of the plate bears what the whole does, with the crack in a plane of symmetry between the nodes; where nodes lie in that plane it is refused."""
+    whole = run_scene("prm/fracture/centre_crack.prm", COARSE)
+    quarter = {"Domain/Lower corner": "0, 0", "Domain/Cells": "12, 24", "Boundary conditions/Symmetry": "left, bottom", "Boundary conditions/Displacement": "top: 0, 0.01*t"}
+    run = run_scene("prm/fracture/centre_crack.prm", {**COARSE, **quarter})
+    forces = [{round(row[0], 6): row[1] for row in history(r, "force on top in y") if row[0] < 0.51} for r in (whole, run)]
+    check(len(forces[0]) > 9, f"load steps: {forces[0]}")
+    check_close([2 * forces[1][t] for t in forces[0]], list(forces[0].values()), relative=1e-8, what="twice the force on a quarter")
+    check_close([2 * largest(run, "force on top in y")], [largest(whole, "force on top in y")], relative=1e-8, what="twice the strength of a quarter")
+    for models, energy in (("finite elements", ""), ("coupled", "0.01"), ("peridynamics", "0.01")):
+        asked = {"Domain/Nodes": "vertices", "Models": models, "Material/Fracture energy": energy}
+        run = run_scene("prm/fracture/centre_crack.prm", {**COARSE, **quarter, **asked}, expect_error=True)
+        check_message(run, "'Segments' in section 'Cracks'", "'Symmetry = bottom'", "ligament: free, 0", "'Nodes = cell centers'")
 
 
 def ranks():
@@ -310,7 +330,7 @@ def scatter():
 
 
 def main():
-    parts = {function.__name__: function for function in (plate, beside, cantilever, block, bend, mesh, motion, steps, ranks, oblique, scatter, fine_plate, fine_block, fine_motion)}
+    parts = {function.__name__: function for function in (plate, beside, cantilever, block, bend, mesh, motion, steps, symmetry, ranks, oblique, scatter, fine_plate, fine_block, fine_motion)}
     for name in sys.argv[1:] or [name for name in parts if not name.startswith("fine")]:
         parts[name]()
     finish()

@@ -10,6 +10,7 @@
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace PeriDeal
@@ -50,6 +51,35 @@ namespace PeriDeal
                             body.boundary_conditions.name_of(side) +
                             "' is not normal to an axis."));
       return found;
+    }
+
+
+    /** Nodes in a plane of symmetry are held on a crack that lies in it, too: it would be none. */
+    template <int dim>
+    void require_uncracked(const BodyParameters<dim> &body, const types::boundary_id side)
+    {
+      if (!body.domain.has_lattice() || side >= 2 * dim)
+        return;
+      const unsigned int axis  = side / 2;
+      const double       plane = side % 2 == 0 ? body.domain.lower[axis] : body.domain.upper[axis],
+                   slack       = 1e-6 * body.domain.spacing()[axis];
+      const std::string name   = body.boundary_conditions.name_of(side);
+      std::string       held;
+      for (unsigned int d = 0; d < dim; ++d)
+        held += std::string(d > 0 ? ", " : "") + (d == axis ? "0" : "free");
+      for (const CrackPiece<dim> &piece : body.cracks.pieces(body.cracks.end_time))
+        body.cracks.refuse(
+          std::all_of(piece.corners.begin(),
+                      piece.corners.end(),
+                      [&](const Point<dim> &p) { return std::abs(p[axis] - plane) <= slack; }),
+          dim == 2 ? "Segments" : "Polygons",
+          "a crack lies in the plane of 'Symmetry = " + name +
+            "' (section 'Boundary conditions'), whose nodes are held: it would have no effect. "
+            "Hold there what is whole, without the crack: 'Parts = ligament: " +
+            name + " if FORMULA' and 'Displacement = ligament: " + held +
+            "' in place of 'Symmetry = " + name +
+            "'; or take both halves of the body. 'Models = peridynamics' with 'Nodes = cell "
+            "centers' in section 'Domain' has no nodes in that plane, and takes such cracks.");
     }
 
 
@@ -170,6 +200,7 @@ namespace PeriDeal
         require(side, "Symmetry");
         if (at_centers && side < 2 * dim && beyond[side] == BeyondSide::mirrored)
           continue; // families go on beyond the side, on which no node lies
+        require_uncracked(body, side);
         const unsigned int d = normal_direction(nodes, side, body, communicator);
         for (const NodeOnSide<dim> &node : nodes)
           if (node.side == side)
