@@ -159,6 +159,9 @@ namespace PeriDeal
     EXPECT_EQ(removed({{Point<2>(0.1, 0.1), Point<2>(0.45, 0.45)},
                        {Point<2>(0.45, 0.45), Point<2>(0.45, 0.2)}}),
               (Numbers{0, 1, 5}));
+    // A mouth at a vertex on the side of the body is no tip.
+    EXPECT_EQ(removed({{Point<2>(0., 0.25), Point<2>(0.5, 0.75)}}), (Numbers{0, 4, 5, 9}));
+    EXPECT_EQ(removed({{Point<2>(0.5, 0.75), Point<2>(0., 0.25)}}), (Numbers{4, 8, 9}));
     // Along faces the cells on the right go.
     EXPECT_EQ(removed({{Point<2>(0.25, 0.5), Point<2>(0.75, 0.5)}}), (Numbers{5, 6}));
   }

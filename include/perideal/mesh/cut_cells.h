@@ -6,6 +6,7 @@
 #include <perideal/scene/crack_geometry.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -27,14 +28,40 @@ namespace PeriDeal
     return false;
   }
 
+  /** Whether a point near a cell lies beyond one of its faces that is a side of the body. */
+  template <int dim, typename Cell>
+  bool leaves_body(const Cell &cell, const dealii::Point<dim> &p)
+  {
+    const double same = 1e-6 * cell->diameter();
+    for (const unsigned int f : cell->face_indices())
+      if (const auto face = cell->face(f); face->at_boundary())
+        {
+          dealii::Tensor<1, dim> normal;
+          if constexpr (dim == 1)
+            normal[0] = 1.;
+          else if constexpr (dim == 2)
+            normal = dealii::cross_product_2d(face->vertex(1) - face->vertex(0));
+          else
+            normal = dealii::cross_product_3d(face->vertex(3) - face->vertex(0),
+                                              face->vertex(2) - face->vertex(1));
+          normal /= normal.norm();
+          const dealii::Point<dim> on = face->center();
+          if (((p - on) * normal) * ((cell->center() - on) * normal) < 0. &&
+              std::abs((p - on) * normal) > same)
+            return true;
+        }
+    return false;
+  }
+
+
   /**
-   * Whether a point on the line or plane of a crack lies on it, and the crack goes on from there in
-   * all directions, so that this is no tip. @param size of a cell there
+   * Whether a point of a cell on the line or plane of a crack lies on it, and the crack goes on
+   * from there in all directions, to the side of the body at least, so that this is no tip.
    */
-  template <int dim>
+  template <int dim, typename Cell>
   bool passes_through(const CrackGeometry<dim> &crack,
-                      const dealii::Point<dim> &p,
-                      const double              size)
+                      const Cell               &cell,
+                      const dealii::Point<dim> &p)
   {
     constexpr double part = 1e-3;
     if (!crack.covers(p))
@@ -46,10 +73,10 @@ namespace PeriDeal
         along -= (along * crack.normal()) * crack.normal();
         if (along.norm() < 1e-6)
           continue;
-        along *= part * size / along.norm();
+        along *= part * cell->diameter() / along.norm();
         for (const double sign : {-1., 1.})
           if (const dealii::Point<dim> q = p + sign * along;
-              !crack.covers(q) && !crack.is_closed_near(q))
+              !crack.covers(q) && !crack.is_closed_near(q) && !leaves_body(cell, q))
             return false;
       }
     return true;
@@ -100,7 +127,7 @@ namespace PeriDeal
           middle += (p - dealii::Point<dim>()) / static_cast<double>(section.size());
         if (section.size() < dim)
           {
-            if (passes_through(crack, middle, cell->diameter()))
+            if (passes_through(crack, cell, middle))
               return true;
             continue;
           }
