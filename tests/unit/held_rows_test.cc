@@ -112,9 +112,11 @@ namespace
         for (unsigned int d = 0; d < dim; ++d)
           area *= d == side / 2 ? 1. : body.scene.domain.upper[d];
         if (rollers && !op.nonlinear() && !stress.empty())
-          EXPECT_NEAR(force[side / 2],
-                      (side % 2 == 0 ? -area : area) * stress[0][side / 2][side / 2],
-                      1e-11 * std::abs(force[side / 2]));
+          {
+            EXPECT_NEAR(force[side / 2],
+                        (side % 2 == 0 ? -area : area) * stress[0][side / 2][side / 2],
+                        1e-11 * std::abs(force[side / 2]));
+          }
       }
     EXPECT_LT(sum.norm(), 1e-12 * all);
   }
@@ -225,7 +227,9 @@ TEST(HeldRows, where)
   expect_sides({{"Boundary conditions/Displacement layer", "0.2"}}, none, "");
   expect_sides({{"Boundary conditions/Displacement layer", "0.05"}}, none, "Displacement layer");
   expect_sides({{"Material/Fracture energy", "1"}}, none, "bonds may break");
-  expect_sides({{"Domain/Cells", "12, 2"}}, {true, true, false, false}, "too few cells wide");
+  expect_sides({{"Domain/Cells", "12, 2"}, {"Domain/Upper corner", "1, 0.2"}},
+               {true, true, false, false},
+               "too few cells wide");
   expect_sides({{"Cracks/Segments", "0.4,0.01 ; 0.4,0.3"}},
                {true, true, false, true},
                "a crack comes within two cells");
