@@ -3,6 +3,7 @@
 """Runs that are stopped and go on give what an uninterrupted run gives.
 
     resume.py heat | cracks | motion | loading      stopped by the limit of their wall time, after the first step and later
+    resume.py running                               the same, while a crack runs through a blended zone that follows it
     resume.py ranks                                 the same, resumed on another number of processes
     resume.py mistakes                              nothing to resume, other scenes, damaged files
     resume.py signals                               stopped by SIGTERM and SIGKILL at random moments, on 1 and 2 processes (long)
@@ -173,6 +174,48 @@ def check_scene(scene, overrides, tolerance):
     print(f"{what}: stopped {1 + stopped} times, difference {found:.1e}")
 
 
+RUNNING = {"Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Peridynamics/Horizon ratio": "3", "Coupling/Scheme": "blending",
+           "Coupling/Overlap": "1", "Coupling/Zone": "follow", "Boundary conditions/Traction": "top: 0, 18e6; bottom: 0, -18e6", "Time/Time step": "2e-7",
+           "Time/End time": "1.4e-5", "Output/Write every": "4e-7", "Output/Fields": "hdf5"}
+
+
+def last_broken(folder):
+    return max((float(row[3]) for row in tables_of(folder).get("totals.csv", []) if row[2] == "broken bonds"), default=0.)
+
+
+def last_values(folder):
+    """The fields of the last output."""
+    found = {}
+    with h5py.File(max(glob.glob(os.path.join(folder, "fields", "*.h5")), key=os.path.getmtime)) as file:
+        file.visititems(lambda name, item: found.__setitem__(name, item[()]) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def check_running():
+    """Stopped when some of the bonds that break have broken, and the zone has grown."""
+    scene, whole = "fracture/branching_crack.prm", new_folder()
+    start = time.monotonic()
+    check(run(scene, whole, RUNNING).returncode == 0, scene)
+    took, all_broken = time.monotonic() - start, last_broken(whole)
+    check(all_broken > 200, f"bonds break: {all_broken}")
+    for share in (0.65, 0.55, 0.75, 0.45, 0.85):
+        resumed = new_folder()
+        result = run(scene, resumed, {**RUNNING, "Checkpoint/Wall time limit": f"{share * took:.3f} s"})
+        until_then = last_broken(resumed)
+        if result.returncode == 3 and 0 < until_then < 0.9 * all_broken:
+            break
+    check_stopped(result, resumed, scene)
+    check(0 < until_then < 0.9 * all_broken, f"stopped with {until_then} of {all_broken} broken bonds")
+    check(run(scene, resumed, RUNNING, ["--resume"]).returncode == 0, "resumed")
+    found = compare(whole, resumed, IMPLICIT, scene)
+    fields, others = last_values(whole), last_values(resumed)
+    check(sorted(fields) == sorted(others) and any("displacement" in name for name in fields), f"fields {sorted(fields)}, {sorted(others)}")
+    for name, values in fields.items():
+        gap, size = abs(values - others[name]).max(), abs(values).max()
+        check(gap <= IMPLICIT * size, f"{name}: differs by {gap:.2e} of {size:.2e}")
+    print(f"{scene}, blended: stopped with {until_then:.0f} of {all_broken:.0f} broken bonds, difference {found:.1e}")
+
+
 def check_ranks():
     """Explicit peridynamics does not ask how many processes there are; others do by round-off."""
     for scene, overrides, tolerance in (("coupling/growing_cracks.prm", {"Domain/Cells": "24, 24"}, 1e-10),
@@ -313,6 +356,8 @@ if __name__ == "__main__":
     if part in SCENES:
         for one in SCENES[part]:
             check_scene(*one)
+    elif part == "running":
+        check_running()
     elif part == "ranks":
         check_ranks()
     elif part == "mistakes":

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "zone_breaking_tools.h"
 
@@ -50,23 +51,19 @@ namespace
   }
 
 
-  /**
-   * With families everywhere the operator of peridynamics, of which the same bonds have broken.
-   */
   template <int dim>
-  void expect_peridynamics(const Settings &more)
+  Vector stretched(const Body<dim> &body)
   {
-    const Settings  settings = blended<dim>("everywhere", dim == 1 ? 0. : 0.4) + warm + more;
-    const Body<dim> coupled(settings, ModelKind::coupled), alone(settings, ModelKind::peridynamics);
-    const auto      field = [](const Point<dim> &p) {
-      return Tensor<1, dim>(0.006 * bumpy_vector<dim>(p));
-    };
-    Vector     x       = coupled.values(field), y(x);
-    Vector     x_alone = alone.values(field), y_alone(x_alone);
-    const auto n       = coupled.op().break_bonds(x, 0., 0.3);
-    EXPECT_EQ(n, alone.op().break_bonds(x_alone, 0., 0.3));
-    EXPECT_GT(n, 0.02 * coupled.op().size().bonds);
-    EXPECT_LT(n, 0.4 * coupled.op().size().bonds);
+    return body.values(
+      [](const Point<dim> &p) { return Tensor<1, dim>(0.006 * bumpy_vector<dim>(p)); });
+  }
+
+
+  /** A body whose families are everywhere, and peridynamics: forces, energies, damage. */
+  template <int dim>
+  void expect_same_bodies(const Body<dim> &coupled, const Body<dim> &alone)
+  {
+    Vector     x = stretched(coupled), y(x), x_alone = stretched(alone), y_alone(x_alone);
     const auto expect_same = [&](const std::string &what) {
       const double size = y.linfty_norm();
       for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
@@ -93,6 +90,119 @@ namespace
   }
 
 
+  /**
+   * With families everywhere the operator of peridynamics, of which the same bonds have broken.
+   */
+  template <int dim>
+  void expect_peridynamics(const Settings &more)
+  {
+    const Settings  settings = blended<dim>("everywhere", dim == 1 ? 0. : 0.4) + warm + more;
+    const Body<dim> coupled(settings, ModelKind::coupled), alone(settings, ModelKind::peridynamics);
+    const auto      n = coupled.op().break_bonds(stretched(coupled), 0., 0.3);
+    EXPECT_EQ(n, alone.op().break_bonds(stretched(alone), 0., 0.3));
+    EXPECT_GT(n, 0.02 * coupled.op().size().bonds);
+    EXPECT_LT(n, 0.4 * coupled.op().size().bonds);
+    expect_same_bodies(coupled, alone);
+  }
+
+
+  /** Of a crack that grows, all events; bonds break before, midway and at last. */
+  template <int dim>
+  void grow_and_break(const Body<dim> &body, const Vector &u, const double share)
+  {
+    ElasticOperator &op       = body.op();
+    const double     energy   = op.energy(u);
+    unsigned int     n_events = 0;
+    const auto       advance  = [&](const double at_least) {
+      while (op.widen_zone(u))
+        ;
+      return op.break_bonds(u, 0., at_least);
+    };
+    EXPECT_GT(advance(share), 0U);
+    for (double t = op.next_event(0.); t < 1.; t = op.next_event(t), ++n_events)
+      {
+        EXPECT_TRUE(op.grow_cracks(u, t));
+        if (t > 0.3 && t < 0.35)
+          op.break_bonds(u, t, 0.8 * share);
+      }
+    EXPECT_GT(n_events, 5U);
+    advance(0.);
+    // Whatever is cut, breaks or joins is counted.
+    EXPECT_NEAR(op.energy(u) + op.released_energy(), energy, 1e-12 * energy);
+    EXPECT_GT(std::abs(op.released_energy()), 1e-3 * energy);
+  }
+
+
+  template <int dim>
+  struct Crack
+  {
+    Settings growing, grown; // that it grows, and as it is at last
+  };
+
+
+  /** From one wall of a row of cells to another one. */
+  template <int dim>
+  Crack<dim> crack_at(const double from, const double start, const double end, const double level)
+  {
+    const auto segment = [&](const double last) {
+      std::ostringstream text;
+      if (dim == 2)
+        text << from << ',' << level << " ; " << last << ',' << level;
+      else
+        text << from << ",0.05," << level << " ; " << last << ",0.05," << level << " ; " << last
+             << ",0.45," << level << " ; " << from << ",0.45," << level;
+      return Settings{{dim == 2 ? "Cracks/Segments" : "Cracks/Polygons", text.str()}};
+    };
+    std::ostringstream growth; // from t = 0.1 to 0.6
+    growth << "2: 0.1, " << 2. * (end - start) << (dim == 2 ? ",0, 0.6" : ",0,0, 0.6");
+    if (dim == 3)
+      growth << " ; 3: 0.1, " << 2. * (end - start) << ",0,0, 0.6";
+    return {segment(start) + Settings{{"Cracks/Growth", growth.str()}, {"Time/End time", "1"}},
+            segment(end)};
+  }
+
+
+  template <int dim>
+  void expect_peridynamics_with_growth(const Settings &more, const Crack<dim> &crack)
+  {
+    const Settings  settings = blended<dim>("everywhere", 0.4) + more + crack.growing;
+    const Body<dim> coupled(settings, ModelKind::coupled), alone(settings, ModelKind::peridynamics);
+    grow_and_break(coupled, stretched(coupled), 0.4);
+    grow_and_break(alone, stretched(alone), 0.4);
+    EXPECT_EQ(coupled.op().n_broken_bonds(), alone.op().n_broken_bonds());
+    expect_same_bodies(coupled, alone);
+  }
+
+
+  /** A crack that grows through what breaks, beside elements: at last as if it had been there. */
+  template <int dim>
+  void expect_grown(const Settings &more, const Crack<dim> &crack, const double sharpness)
+  {
+    const Settings  settings = blended<dim>(dim == 2 ? "0.7 - y" : "1.4 - x", 0.3) + more;
+    const Body<dim> body(settings + crack.growing, ModelKind::coupled),
+      built(settings + crack.grown, ModelKind::coupled);
+    const Vector u = peak(body, 0.012, sharpness), v = peak(built, 0.012, sharpness);
+    const auto   forces = [&](const Body<dim> &of, const Vector &at) {
+      Vector y(at);
+      of.op().unbalanced(y, at, 0.);
+      return y;
+    };
+    const Vector before = forces(body, u);
+    grow_and_break(body, u, 0.3);
+    const auto n = built.op().break_bonds(v, 0.);
+    EXPECT_GT(n, 10U);
+    EXPECT_GT(body.op().n_broken_bonds(), n); // also what the crack has cut after it broke
+    const Vector y = forces(body, u), z = forces(built, v);
+    const double size = z.linfty_norm();
+    EXPECT_GT(largest_difference(before, y), 1e-3 * size);
+    EXPECT_LE(largest_difference(y, z), 1e-12 * size);
+    EXPECT_NEAR(body.op().energy(u) / built.op().energy(v), 1., 1e-12);
+    EXPECT_LE(largest_difference(body.op().diagonal(), built.op().diagonal()),
+              1e-12 * built.op().diagonal().linfty_norm());
+    check_sound(body);
+  }
+
+
   template <int dim>
   void check_a_fifth_broken(const std::string &zone, const double nu, const std::string &overlap)
   {
@@ -109,6 +219,137 @@ namespace
     check_following_zone(body, 0.002, 400., largest_share);
     check_sound(body);
   }
+
+
+  /** Nodes around which there are families alone, or elements alone. */
+  template <int dim>
+  bool is_amid(const Body<dim> &body, const unsigned int node, const bool families)
+  {
+    const Coupling<dim> &bonds = body.elements->bonds();
+    const auto          &nodes = bonds.families().nodes();
+    const double around = bonds.families().weights().horizon() + 1.01 * nodes.lattice()->spacing[0];
+    for (unsigned int j = 0; j < nodes.n_local(); ++j)
+      if (nodes.position(j).distance(nodes.position(node)) < around && bonds.in_zone(j) != families)
+        return false;
+    return true;
+  }
+
+
+  /** Of a body that one process has whole. */
+  template <int dim>
+  unsigned int node_at(const Body<dim> &body, const Point<dim> &p)
+  {
+    unsigned int k = 0;
+    while (body.position(k).distance(p) > 1e-9)
+      ++k;
+    return k;
+  }
+
+
+  /**
+   * Of K of a zone that follows what is stretched and, if there is one, a crack that grows: rows of
+   * families everywhere and of elements, whose cracks are as they are at last.
+   */
+  template <int dim>
+  void check_rows_of_following_zone(const Settings   &more,
+                                    const double      height,
+                                    const double      sharpness,
+                                    const Crack<dim> &crack = {})
+  {
+    const Settings  follow = blended<dim>("follow", 0.4) + more;
+    const Body<dim> body(follow + crack.growing, ModelKind::coupled),
+      full(follow + Settings{{"Coupling/Zone", "everywhere"}} + crack.grown,
+           ModelKind::coupled,
+           MPI_COMM_SELF),
+      elements(zoned<dim>("cracks: 1", 0.4) + more + crack.grown,
+               ModelKind::finite_elements,
+               MPI_COMM_SELF);
+    const Vector u = peak(body, height, sharpness);
+    if (crack.grown.empty())
+      {
+        ASSERT_TRUE(body.op().widen_zone(u));
+        body.op().break_bonds(u, 0.);
+      }
+    else
+      grow_and_break(body, u, 0.3);
+    const auto n = full.op().break_bonds(peak(full, height, sharpness), 0.);
+    EXPECT_GT(n, 10U);
+    if (crack.grown.empty())
+      EXPECT_EQ(body.op().n_broken_bonds(), n);
+    else
+      EXPECT_GT(body.op().n_broken_bonds(), n); // and what has been cut after it broke
+    EXPECT_LT(body.elements->bonds().zone_share(), 0.7);
+    const auto image = [](const Body<dim> &of) {
+      const Vector x = of.values(bumpy_vector<dim>);
+      Vector       y(x);
+      of.op().multiply(y, x);
+      return y;
+    };
+    const Vector y = image(body);
+    for (const Body<dim> *other : {&full, &elements})
+      {
+        const Vector z          = image(*other);
+        unsigned int n_compared = 0;
+        for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
+          {
+            if (!is_amid(body, i, other == &full))
+              continue;
+            const unsigned int k = node_at(*other, body.position(i));
+            for (unsigned int d = 0; d < dim; ++d, ++n_compared)
+              EXPECT_NEAR(y.local_element(dim * i + d),
+                          z.local_element(dim * k + d),
+                          1e-13 * z.linfty_norm())
+                << body.position(i);
+          }
+        EXPECT_GT(dealii::Utilities::MPI::sum(n_compared, MPI_COMM_WORLD), 0.05 * y.size());
+      }
+    check_sound(body);
+  }
+
+
+  /** Temperatures that are set on the way, of a zone that follows, and the last one that is given. */
+  template <int dim>
+  void check_temperatures(const Settings &more)
+  {
+    const Settings settings =
+      blended<dim>("follow", 0.4) + more + Settings{{"Material/Thermal expansion", "1e-3"}};
+    const Body<dim> given(settings + Settings{{"Elasticity/Temperature change", "-1 - x"}},
+                          ModelKind::coupled),
+      set(settings, ModelKind::coupled);
+    const Vector u = peak(set, 0.002, 400.), v = peak(given, 0.002, 400.);
+    const auto   cool = [&](const double by) {
+      Vector change(set.nodes->partitioner());
+      for (unsigned int i = 0; i < set.nodes->n_owned(); ++i)
+        change.local_element(i) = by - set.position(i)[0];
+      set.op().set_temperature_change(change);
+    };
+    const auto follow = [](const Body<dim> &body, const Vector &at) {
+      while (body.op().widen_zone(at))
+        ;
+      return body.op().break_bonds(at, 0.);
+    };
+    cool(1.5);
+    const auto n_first = follow(set, u);
+    cool(-1.);
+    const double before = set.op().energy(u);
+    const double told   = set.op().released_energy();
+    const auto   n_last = follow(set, u), n = follow(given, v);
+    EXPECT_GT(n_first, 0U);
+    EXPECT_GT(n_last, 0U); // cold bonds are stretched farther
+    EXPECT_EQ(n_first + n_last, n);
+    EXPECT_NEAR(before - set.op().energy(u), set.op().released_energy() - told, 1e-12 * before);
+    EXPECT_LT(given.elements->bonds().zone_share(), 0.9);
+    EXPECT_EQ(given.op().size().bonds, set.op().size().bonds);
+    Vector y(u), z(v);
+    set.op().unbalanced(y, u, 0.);
+    given.op().unbalanced(z, v, 0.);
+    EXPECT_LE(largest_difference(y, z), 1e-12 * z.linfty_norm());
+    EXPECT_NEAR(set.op().energy(u) / given.op().energy(v), 1., 1e-12);
+  }
+
+
+  const Settings wide{{"Domain/Cells", "28, 24"}, {"Domain/Upper corner", "1.4, 1.2"}};
+  const Settings beam{{"Domain/Upper corner", "2, 0.5, 0.4"}, {"Domain/Cells", "20, 5, 4"}};
 } // namespace
 
 
@@ -175,6 +416,40 @@ TEST(FamilyBreaking, follows_what_is_stretched)
   check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Domain/Upper corner", "1.4, 1.2"}}, 0.8);
   check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Coupling/Overlap", "1"}}, 0.9);
   check_following_zone<2>(warm + Settings{{"Domain/Cells", "28, 24"}}, 0.9);
-  check_following_zone<3>({{"Domain/Upper corner", "1.2, 0.7, 0.6"}, {"Domain/Cells", "12, 7, 6"}},
-                          1.1);
+  check_following_zone<3>(beam, 0.7);
+}
+
+
+TEST(FamilyBreaking, leaves_elements_where_nothing_is_stretched)
+{
+  check_rows_of_following_zone<2>(wide, 0.004, 200.);
+  check_rows_of_following_zone<3>(beam, 0.004, 50.);
+}
+
+
+TEST(FamilyBreaking, grown_cracks_and_broken_bonds_are_those_of_peridynamics)
+{
+  expect_peridynamics_with_growth<2>({}, crack_at<2>(0.35, 0.65, 0.95, 0.55));
+  expect_peridynamics_with_growth<2>(warm, crack_at<2>(0.35, 0.65, 0.95, 0.55));
+  expect_peridynamics_with_growth<3>({}, crack_at<3>(0.15, 0.35, 0.55, 0.25));
+}
+
+
+TEST(FamilyBreaking, cracks_grow_through_what_breaks)
+{
+  const Crack<2> level = crack_at<2>(0.2, 0.35, 0.7, 0.075);
+  const Crack<3> plane = crack_at<3>(0.2, 0.35, 0.75, 0.15);
+  for (const char *overlap : {"0", "1"})
+    expect_grown<2>(wide + Settings{{"Coupling/Overlap", overlap}}, level, 200.);
+  expect_grown<3>(beam, plane, 50.);
+  check_rows_of_following_zone<2>(wide, 0.012, 200., level);
+  check_rows_of_following_zone<3>(beam, 0.012, 50., plane);
+}
+
+
+TEST(FamilyBreaking, follows_temperatures_that_change)
+{
+  check_temperatures<2>(wide);
+  check_temperatures<2>(wide + Settings{{"Coupling/Overlap", "1"}});
+  check_temperatures<3>(beam);
 }

@@ -239,6 +239,111 @@ namespace PeriDeal
 
   namespace
   {
+    /** A long box, whose bonds may break, and a short one on its right. */
+    Settings long_box()
+    {
+      return two_boxes<2>() + Settings{{"Domain/Upper corner", "2.25, 0.25"},
+                                       {"Domain/Cells", "36, 4"},
+                                       {"Domain/Holes", "rectangle: 1.75, -1, 2, 2"},
+                                       {"Material/Critical stretch", "0.05"}};
+    }
+
+
+    /** The short box presses, by an amount, and the first columns of the long one are pulled off. */
+    Vector pressed_and_pulled(const Body<2> &body, const double pressed, const double pulled)
+    {
+      return body.values([&](const Point<2> &p) {
+        Tensor<1, 2> value = 0.02 * h * bumpy_vector<2>(p);
+        value[0] -= p[0] > 1.9 ? gap - (1.2 - pressed) * h : p[0] < h ? pulled * h : 0.;
+        return value;
+      });
+    }
+  } // namespace
+
+
+  /** Also if forces have been asked for at other displacements meanwhile, as steps do. */
+  TEST(ShortRangeContact, forces_that_are_mended_are_those_of_a_fresh_body)
+  {
+    for (const Settings &more :
+         {Settings(),
+          Settings{{"Elasticity/Model", "bond-based"}},
+          Settings{{"Material/Thermal expansion", "1e-3"}, {"Elasticity/Temperature change", "x"}}})
+      {
+        const Body<2> body(long_box() + more, ModelKind::peridynamics),
+          fresh(long_box() + more, ModelKind::peridynamics);
+        const Vector     u  = pressed_and_pulled(body, 0.1, 0.1);
+        const Vector     v  = pressed_and_pulled(body, 0.25, 0.02);
+        ElasticOperator &op = body.op();
+        Vector           r  = forces_at(body, v), meanwhile(r), from_scratch(r);
+        for (const Vector *at : {&u, &v, &u})
+          op.unbalanced(at == &v ? meanwhile : r, *at, 0.);
+        const auto n = op.break_bonds(u, 0.);
+        EXPECT_GT(n, 5U);
+        const Vector before = r;
+        op.mend_unbalanced(r, u, 0.);
+        fresh.op().update_contact(v);
+        EXPECT_EQ(fresh.op().break_bonds(u, 0.), n);
+        fresh.op().unbalanced(from_scratch, u, 0.);
+        const double size = from_scratch.linfty_norm();
+        EXPECT_GT(largest_difference(before, r), 1e-3 * size);
+        EXPECT_LE(largest_difference(r, from_scratch), 1e-12 * size);
+        // The short box is pushed away.
+        double push = 0.;
+        for (unsigned int i = 0; i < r.locally_owned_size() / 2; ++i)
+          push += body.position(i)[0] > 1.9 ? r.local_element(2 * i) : 0.;
+        EXPECT_GT(dealii::Utilities::MPI::sum(push, MPI_COMM_WORLD), 1e-3);
+      }
+  }
+
+
+  namespace
+  {
+    /** Asks for the forces anew whenever they are mended. */
+    struct WatchedOperator : StateOperator<2>
+    {
+      using StateOperator<2>::StateOperator;
+
+      void mend_unbalanced(Vector &r, const Vector &u, const double t) const override
+      {
+        Vector from_scratch(r);
+        StateOperator<2>::mend_unbalanced(r, u, t);
+        this->unbalanced(from_scratch, u, t);
+        ++n_mended;
+        apart = std::max(apart, largest_difference(r, from_scratch) / from_scratch.linfty_norm());
+      }
+
+      mutable unsigned int n_mended = 0;
+      mutable double       apart    = 0.;
+    };
+  } // namespace
+
+
+  /** Bonds break in the step in which their support jumps, while bodies touch elsewhere. */
+  TEST(ShortRangeContact, steps_mend_forces_after_a_jump_of_supports)
+  {
+    const Settings jumping{
+      {"Boundary conditions/Displacement", "left: if(t > 0.05, -0.007, 0), free"}};
+    Body<2>     body(long_box() + jumping, ModelKind::peridynamics);
+    auto        watched = std::make_unique<WatchedOperator>(*body.nodes, body.scene);
+    const auto &op      = *watched;
+    body.states         = std::move(watched);
+    Vector u            = pressed_and_pulled(body, 0.1, 0.);
+    Vector v            = body.values([&](const Point<2> &p) {
+      return Tensor<1, 2>({p[0] > 1.9 ? -0.5 : 0., 0.});
+    });
+    body.op().distribute(u, 0.);
+    StepperOptions options;
+    options.time_step  = 0.5 * stable_motion_step(body.op());
+    const auto stepper = make_motion_stepper("verlet", body.op(), options);
+    stepper->advance(u, v, 0., 0.1);
+    EXPECT_GT(op.n_broken_bonds(), 5U);
+    EXPECT_GT(op.n_mended, 0U);
+    EXPECT_LT(op.apart, 1e-12);
+  }
+
+
+  namespace
+  {
     struct Impact
     {
       double drift, left, right; // of the energy over itself; momenta over that of the start

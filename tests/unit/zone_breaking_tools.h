@@ -57,9 +57,24 @@ namespace PeriDeal
     }
 
 
+    /** A displacement of a height, exp(-sharpness r^2), about a place beside the lower side. */
+    template <int dim>
+    Vector peak(const Body<dim> &body, const double height, const double sharpness)
+    {
+      Vector u = body.values([&](const dealii::Point<dim> &p) {
+        dealii::Tensor<1, dim> value;
+        value[0] = height * std::exp(-sharpness *
+                                     (p - 0.5 * dealii::Point<dim>::unit_vector(0)).norm_square());
+        return value;
+      });
+      body.op().distribute(u, 0.);
+      return u;
+    }
+
+
     /**
-     * A zone that follows what a field of a height, exp(-sharpness r^2) in the middle of the lower
-     * side, stretches, of less than a share of the body: energies and forces that change with it.
+     * A zone that follows what a peak() stretches, of less than a share of the body: energies and
+     * forces that change with it.
      */
     template <int dim>
     void check_following_zone(Body<dim>   &body,
@@ -68,14 +83,8 @@ namespace PeriDeal
                               const double largest_share)
     {
       EXPECT_EQ(body.elements->size().bonds, 0U);
-      Vector u = body.values([&](const dealii::Point<dim> &p) {
-        dealii::Tensor<1, dim> value;
-        value[0] = height * std::exp(-sharpness *
-                                     (p - 0.5 * dealii::Point<dim>::unit_vector(0)).norm_square());
-        return value;
-      });
-      body.op().distribute(u, 0.);
-      Vector forces(u), then(u);
+      const Vector u = peak(body, height, sharpness);
+      Vector       forces(u), then(u);
       body.op().unbalanced(forces, u, 0.);
       const double whole = body.op().energy(u);
       ASSERT_TRUE(body.op().widen_zone(u));

@@ -122,7 +122,10 @@ namespace PeriDeal
   bool SolidBonds<dim>::has_parted(const unsigned int i, const BondState &state) const
   {
     bool any = beyond && beyond->is_parted(i);
-    rows.for_each_stored(i, [&](const auto &bond) { any = any || state.is_parted(bond.number); });
+    rows.for_each_stored(i, [&](const auto &bond) {
+      any = any || state.is_parted(bond.number) ||
+            (!state.is_whole(bond.number) && families.cracks().cuts(i, bond.neighbor));
+    });
     return any;
   }
 
