@@ -307,7 +307,7 @@ namespace
   }
 
 
-  /** Temperatures that are set on the way, of a zone that follows, and the last one that is given. */
+  /** Temperatures that are set on the way in a zone that follows, and the last one, given. */
   template <int dim>
   void check_temperatures(const Settings &more)
   {

@@ -249,7 +249,7 @@ namespace PeriDeal
     }
 
 
-    /** The short box presses, by an amount, and the first columns of the long one are pulled off. */
+    /** The short box presses, by an amount, and first columns of the long one are pulled off. */
     Vector pressed_and_pulled(const Body<2> &body, const double pressed, const double pulled)
     {
       return body.values([&](const Point<2> &p) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/operators/coupling/breakable_zone.h>
 #include <perideal/operators/solid/family_bonds.h>
 
 #include <algorithm>
