@@ -254,6 +254,7 @@ namespace
   void check_rows_of_following_zone(const Settings   &more,
                                     const double      height,
                                     const double      sharpness,
+                                    const double      largest_share,
                                     const Crack<dim> &crack = {})
   {
     const Settings  follow = blended<dim>("follow", 0.4) + more;
@@ -278,7 +279,7 @@ namespace
       EXPECT_EQ(body.op().n_broken_bonds(), n);
     else
       EXPECT_GT(body.op().n_broken_bonds(), n); // and what has been cut after it broke
-    EXPECT_LT(body.elements->bonds().zone_share(), 0.7);
+    EXPECT_LT(body.elements->bonds().zone_share(), largest_share);
     const auto image = [](const Body<dim> &of) {
       const Vector x = of.values(bumpy_vector<dim>);
       Vector       y(x);
@@ -416,14 +417,14 @@ TEST(FamilyBreaking, follows_what_is_stretched)
   check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Domain/Upper corner", "1.4, 1.2"}}, 0.8);
   check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Coupling/Overlap", "1"}}, 0.9);
   check_following_zone<2>(warm + Settings{{"Domain/Cells", "28, 24"}}, 0.9);
-  check_following_zone<3>(beam, 0.7);
+  check_following_zone<3>(beam, 0.4); // measured: 0.323
 }
 
 
 TEST(FamilyBreaking, leaves_elements_where_nothing_is_stretched)
 {
-  check_rows_of_following_zone<2>(wide, 0.004, 200.);
-  check_rows_of_following_zone<3>(beam, 0.004, 50.);
+  check_rows_of_following_zone<2>(wide, 0.004, 200., 0.21); // measured: 0.173
+  check_rows_of_following_zone<3>(beam, 0.004, 50., 0.5);   // 0.433
 }
 
 
@@ -442,8 +443,8 @@ TEST(FamilyBreaking, cracks_grow_through_what_breaks)
   for (const char *overlap : {"0", "1"})
     expect_grown<2>(wide + Settings{{"Coupling/Overlap", overlap}}, level, 200.);
   expect_grown<3>(beam, plane, 50.);
-  check_rows_of_following_zone<2>(wide, 0.012, 200., level);
-  check_rows_of_following_zone<3>(beam, 0.012, 50., plane);
+  check_rows_of_following_zone<2>(wide, 0.012, 200., 0.27, level); // measured: 0.224
+  check_rows_of_following_zone<3>(beam, 0.012, 50., 0.65, plane);  // 0.569
 }
 
 
