@@ -5,9 +5,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/scene/held_sides.h>
-
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <map>
@@ -22,13 +19,11 @@ namespace PeriDeal
   {
     /**
      * Area and the integral of the displacement of each side of a mesh, by its boundary id, of this
-     * process. Between cell centers the displacement of a face is that of its cell; on sides that
-     * are held themselves it is drawn on from the one behind.
+     * process.
      */
     template <int dim>
     std::map<types::boundary_id, std::pair<double, Tensor<1, dim>>> integrals_over_sides(
-      const SolidProblem<dim>         &model,
-      const std::array<bool, 2 * dim> &held)
+      const SolidProblem<dim> &model)
     {
       const DoFHandler<dim> &dofs        = model.dofs();
       const bool             at_vertices = dofs.get_fe().n_dofs_per_vertex() > 0;
@@ -53,14 +48,6 @@ namespace PeriDeal
                     u[d](
                       of_cell[at_vertices ? GeometryInfo<dim>::face_to_cell_vertices(f, v) : 0]) /
                     n;
-              const unsigned int behind = GeometryInfo<dim>::opposite_face[f];
-              if (!at_vertices && face->boundary_id() < 2 * dim && held[face->boundary_id()] &&
-                  !cell->at_boundary(behind))
-                {
-                  cell->neighbor(behind)->get_dof_indices(of_cell);
-                  for (unsigned int d = 0; d < dim; ++d)
-                    mean[d] = 1.5 * mean[d] - 0.5 * u[d](of_cell[0]);
-                }
               double area = 1.; // of a point
               if constexpr (dim > 1)
                 area = face->measure();
@@ -96,7 +83,7 @@ namespace PeriDeal
     const SolidProblem<dim> &model,
     const Scene<dim>        &scene)
   {
-    const auto own = integrals_over_sides(model, sides_held_themselves<dim>(scene));
+    const auto                                          own = integrals_over_sides(model);
     std::vector<std::pair<std::string, Tensor<1, dim>>> result;
     const auto add = [&](const std::string &name, const types::boundary_id id) {
       for (const auto &[known, value] : result)

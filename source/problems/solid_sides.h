@@ -16,7 +16,7 @@ namespace PeriDeal
   /**
    * The mean displacement, by area, of each side that has a condition on its displacement or
    * traction, with the name that the user gave it: of a body with nodes at cell centres that of its
-   * outermost nodes, but for sides that are held themselves. Collective.
+   * outermost nodes. Collective.
    */
   template <int dim>
   std::vector<std::pair<std::string, dealii::Tensor<1, dim>>> displacements_of_sides(

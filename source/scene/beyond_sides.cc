@@ -2,12 +2,10 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/beyond_sides.h>
-#include <perideal/scene/held_sides.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <iterator>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -88,42 +86,6 @@ namespace PeriDeal
         }
       return names;
     }
-
-    /** Sides of the box with a displacement beyond which families go on. */
-    template <int dim>
-    std::set<types::boundary_id> displaced_sides(const BodyParameters<dim> &body)
-    {
-      const auto                   beyond = beyond_sides(body);
-      std::set<types::boundary_id> sides;
-      for (const VectorCondition &condition : body.boundary_conditions.displacement)
-        if (const types::boundary_id side = body.boundary_conditions.side_of(condition.id);
-            side < 2 * dim && beyond[side] == BeyondSide::continued)
-          sides.insert(side);
-      return sides;
-    }
-
-
-    /** Why a displacement holds the outermost row of cell centers; empty: it holds the side. */
-    template <int dim>
-    std::string obstacle_to_holding(const BodyParameters<dim> &body, const types::boundary_id side)
-    {
-      const auto        &conditions = body.boundary_conditions;
-      const unsigned int axis = side / 2, n_cells = body.domain.cells[axis];
-      if (conditions.displacement_layer > 0.)
-        return "the 'Displacement layer' is less than two cells deep";
-      if (body.material.fracture_energy || body.material.critical_stretch)
-        return "bonds may break";
-      if (body.cracks.distance_to_side(side) < 2. * body.domain.spacing()[axis])
-        return "a crack comes within two cells";
-      const bool both = std::any_of(conditions.displacement.begin(),
-                                    conditions.displacement.end(),
-                                    [&](const VectorCondition &condition) {
-                                      return conditions.side_of(condition.id) == (side ^ 1u);
-                                    });
-      if (n_cells < (both ? 3 : 2))
-        return "the body is too few cells wide";
-      return {};
-    }
   } // namespace
 
 
@@ -182,40 +144,24 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::array<bool, 2 * dim> sides_held_themselves(const BodyParameters<dim> &body)
-  {
-    std::array<bool, 2 * dim> sides{};
-    if (body.domain.has_lattice() && body.domain.has_nodes_at_centers())
-      for (const types::boundary_id side : displaced_sides(body))
-        sides[side] = obstacle_to_holding(body, side).empty();
-    return sides;
-  }
-
-
-  template <int dim>
   std::string note_on_held_rows(const BodyParameters<dim> &body)
   {
-    const auto          &conditions = body.boundary_conditions;
-    const Tensor<1, dim> spacing    = body.domain.spacing();
-    if (!body.domain.has_nodes_at_centers() ||
-        conditions.displacement_layer >
-          1.499 * *std::max_element(spacing.begin_raw(), spacing.end_raw()))
-      return {};
+    const auto              &conditions = body.boundary_conditions;
+    const auto               beyond     = beyond_sides(body);
     std::vector<std::string> names;
-    std::string              reason;
-    for (const types::boundary_id side : displaced_sides(body))
-      if (const std::string obstacle = obstacle_to_holding(body, side); !obstacle.empty())
-        {
-          reason = reason.empty() ? obstacle : reason;
-          for (const VectorCondition &condition : conditions.displacement)
-            if (conditions.side_of(condition.id) == side)
-              names.push_back("'" + conditions.name_of(condition.id) + "'");
-        }
-    if (names.empty())
+    for (const VectorCondition &condition : conditions.displacement)
+      if (const types::boundary_id side = conditions.side_of(condition.id);
+          side < 2 * dim && beyond[side] == BeyondSide::continued)
+        names.push_back("'" + conditions.name_of(condition.id) + "'");
+    if (names.empty() || !body.domain.has_nodes_at_centers())
+      return {};
+    const Tensor<1, dim> spacing = body.domain.spacing();
+    if (conditions.displacement_layer >
+        1.499 * *std::max_element(spacing.begin_raw(), spacing.end_raw()))
       return {};
     return "With nodes at cell centers a displacement holds the outermost row of nodes at " +
-           join_names(names) + ", half a cell inside, where " + reason +
-           ", and of the forces beyond the side some act on the row behind it, which is free. "
+           join_names(names) +
+           ", half a cell inside, and of the forces beyond the side some act on the row behind it, which is free. "
            "The body is too stiff by that, as if it were 0.6 to 0.8 cells shorter at each of these sides. 'Nodes = vertices' (section 'Domain') "
            "lie on the sides; with a 'Displacement layer' of two cells (section 'Boundary conditions'), each node at the value of the formula at its own place, linear displacements are exact.";
   }
@@ -291,7 +237,6 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template std::array<bool, 2 * dim>       sides_held_themselves(const BodyParameters<dim> &);  \
   template std::string                     note_on_held_rows(const BodyParameters<dim> &body);  \
   template std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);       \
   template bool                            completes_mesh(const BodyParameters<dim> &body);     \

@@ -120,7 +120,7 @@ namespace PeriDeal
       "",
       "length",
       "Depth behind the sides in `Displacement` in which all nodes are held, each as the formula says at its own place, by all models; with two horizons no family of the nodes that are left is cut "
-      "off there. Empty: the sides alone.");
+      "off there. Empty: the outermost row of nodes.");
     declare(
       "Traction",
       EntryType::list,

@@ -17,36 +17,6 @@ namespace PeriDeal
   }
 
 
-  bool WorkOfForces::find_following(const double t)
-  {
-    for (Vector *v : {&followed, &given})
-      op.initialize_vector(*v);
-    followed = 1.;
-    op.distribute(followed, t);
-    op.distribute(given, t);
-    int any = 0;
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (held[i] && followed.local_element(i) != given.local_element(i))
-        any = 1;
-    if (dealii::Utilities::MPI::max(any, given.get_mpi_communicator()) > 0)
-      return true;
-    for (Vector *v : {&followed, &given})
-      v->reinit(0);
-    return false;
-  }
-
-
-  void WorkOfForces::find_followed(const Vector &from, const Vector &to, const double t)
-  {
-    followed = to;
-    followed -= from;
-    given = 0.;
-    op.distribute(followed, t);
-    op.distribute(given, t);
-    followed -= given;
-  }
-
-
   void WorkOfForces::find_active()
   {
     // What was loaded may still have a force of the last step.
@@ -91,15 +61,10 @@ namespace PeriDeal
     if (op.depends_on_time())
       find_load(t);
     find_forces(unbalanced);
-    if (!follow)
-      follow = find_following(t);
-    if (*follow)
-      find_followed(from, to, t);
     double work = 0.;
     for (const unsigned int i : active)
       work += 0.5 * (forces.local_element(i) + last_forces.local_element(i)) *
-              (to.local_element(i) - from.local_element(i) -
-               (*follow && held[i] ? followed.local_element(i) : 0.));
+              (to.local_element(i) - from.local_element(i));
     last_forces.swap(forces);
     return dealii::Utilities::MPI::sum(work, to.get_mpi_communicator());
   }

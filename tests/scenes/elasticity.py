@@ -322,9 +322,7 @@ def notes():
     run = run_quietly("bar_2d.prm", {**bonds, "Material/Poisson ratio": "1/3"})
     check(not any("Poisson ratio" in note for note in run.summary["notes"]), f"a note on the right Poisson's ratio: {run.summary['notes']}")
     held = {"Boundary conditions/Symmetry": "bottom", "Boundary conditions/Displacement": "left: 0, free", "Domain/Nodes": "cell centers"}
-    for more, told in (({}, False), ({"Boundary conditions/Displacement layer": "0.02"}, True), ({"Boundary conditions/Displacement layer": "0.05"}, False),
-                       ({"Models": PD, "Material/Fracture energy": "1"}, True), ({"Models": PD, "Cracks/Segments": "0.9,0.05 ; 1.1,0.05"}, False),
-                       ({"Models": PD, "Cracks/Segments": "0.04,0.5 ; 0.3,0.5"}, True)):
+    for more, told in (({}, True), ({"Domain/Nodes": "vertices"}, False), ({"Boundary conditions/Displacement layer": "0.05"}, False)):
         run = run_quietly("bar_2d.prm", {**held, **more})
         check(any("outermost row" in note and "'left'" in note for note in run.summary["notes"]) == told, f"{more}: {run.summary['notes']}")
     run = run_scene("prm/elasticity/bar_2d.prm", {**QUIET, "Peridynamics/Calibration": "analytic"}, expect_error=True)

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Elastic peridynamics with cut families (`Surface correction = none`) and with those that go on beyond the sides (`auto`), against closed forms.
 
-    surfaces.py part | held | halves | mesh | table
+    surfaces.py part | halves | mesh | table
 
 `table` computes what doc/elasticity.md shows, in some minutes; the others are the tests.
 """
@@ -111,60 +111,6 @@ def part():
     table.show()
 
 
-BAR = """
-set Physics = elasticity
-set Models = peridynamics
-subsection Domain
-  set Nodes = cell centers
-end
-subsection Material
-  set Young modulus = 200
-  set Poisson ratio = 0.3
-  set Density = 1
-end
-subsection Output
-  set Fields = none
-end
-"""
-ONE, TWO = ({"Dimension": str(dim), "Domain/Lower corner": lower, "Domain/Upper corner": upper, "Domain/Cells": cells, "Output/Probes": probe}
-            for dim, lower, upper, cells, probe in ((1, "0", "1", "20", "0.725"), (2, "0, 0", "1, 0.3", "20, 6", "0.725, 0.125")))
-HELD = "Boundary conditions/Displacement"
-
-
-def held():
-    """Displacements of sides between cell centers: a bar of 20 cells whose ends are held, at rest and in motion, on 1, 2 and 4 processes."""
-    table = Comparison("A bar of 20 cells, strain 0.01")
-    for ranks in (1, 2, 4):
-        rest = run_scene(BAR, {**ONE, HELD: "left: 0; right: 0.01"}, ranks=ranks)
-        table.add(f"at rest, {ranks} processes: force", rest.total("force on right in x", PD), 2, relative=1e-10)
-        table.add("displacement in the bar", rest.rows(PD)[0]["ux"], 0.00725, relative=1e-10)
-        check(rest.summary["notes"] == [], f"no note: {rest.summary['notes']}")
-    # A strain rate that is the same everywhere: no node is accelerated.
-    moving = {**ONE, HELD: "left: 0", "Boundary conditions/Velocity": "right: 0.01*x", "Initial and source/Initial velocity": "0.01*x",
-              "Elasticity/Solver": "dynamics", "Time/End time": "1"}
-    for stepper, ranks in (("verlet", 1), ("verlet", 2), ("newmark", 1)):
-        run = run_scene(BAR, {**moving, "Time/Stepper": stepper}, ranks=ranks)
-        name = f"in motion, {stepper}, {ranks} processes"
-        table.add(f"{name}: force", run.total("force on right in x", PD), 2, relative=1e-10)
-        table.add(f"{name}: force on the other end", run.total("force on left in x", PD), -2, relative=1e-10)
-        table.add(f"{name}: displacement of the end", run.total("displacement of right in x", PD), 0.01, relative=1e-12)
-        table.add(f"{name}: displacement in the bar", run.rows(PD)[-1]["ux"], 0.00725, relative=1e-10)
-        table.add(f"{name}: work", run.total("work of loads and supports", PD), 0.01, relative=1e-10)
-        table.add(f"{name}: energy drift", run.total("energy drift", PD), 0, absolute=1e-12)
-    swinging = run_scene(BAR, {**moving, HELD: "left: 0; right: 0.01*min(1, t)", "Boundary conditions/Velocity": "",
-                               "Initial and source/Initial velocity": "0"})
-    table.add("supports that move, bodies that swing: energy drift", swinging.total("energy drift", PD), 0, absolute=1e-12)
-    # The modulus of the lattice is that of the same bar with nodes on its sides.
-    pulled = {**TWO, HELD: "left: 0, free; right: 0.01, free; top: free, 0", "Boundary conditions/Symmetry": "bottom"}
-    warm = {HELD: "left: 0, free; right: 0, free; top: free, 0", "Material/Thermal expansion": "1e-4", "Elasticity/Temperature change": "-100"}
-    for name, more in (("linear", {}), ("full kinematics", {"Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients"}), ("cooled", warm)):
-        a, b = (run_scene(BAR, {**pulled, **more, "Domain/Nodes": nodes}).total("force on right in x", PD) for nodes in ("cell centers", "vertices"))
-        table.add(f"{name}, in 2D: force over that with vertices", a / b, 1, relative=1e-8)
-    layer = run_scene(BAR, {**pulled, HELD: "left: 0, free; right: 0.01*x, free", "Boundary conditions/Displacement layer": "0.05"})
-    check(any("'Displacement layer'" in note for note in layer.summary["notes"]), f"a note where the row is held: {layer.summary['notes']}")
-    table.show()
-
-
 def halves():
     """Half a body with a crack that crosses its plane of symmetry breaks as the whole one, in motion."""
     table = Comparison("A cracked plate pulled apart: half of it, and the whole one")
@@ -219,5 +165,5 @@ def table():
 
 
 if __name__ == "__main__":
-    {"part": part, "held": held, "halves": halves, "mesh": mesh, "table": table}[sys.argv[1]]()
+    {"part": part, "halves": halves, "mesh": mesh, "table": table}[sys.argv[1]]()
     finish()

@@ -134,7 +134,6 @@ namespace PeriDeal
         LinearSolver solver(*op, 1e-12, 2000, 0);
         solver.solve(0., 1., change, r);
         u += change;
-        op->distribute(u, 0.); // rows that follow others
         for (unsigned int i = 0; i < positions.size(); ++i)
           if (std::abs(positions[i][0] - 4.) < 1.01 && std::abs(positions[i][1] - 3.) < 1.01)
             {

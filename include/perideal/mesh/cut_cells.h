@@ -56,12 +56,14 @@ namespace PeriDeal
 
   /**
    * Whether a point of a cell on the line or plane of a crack lies on it, and the crack goes on
-   * from there in all directions, to the side of the body at least, so that this is no tip.
+   * from there in all directions, so that this is no tip. @param to_sides or to the side of the
+   * body
    */
   template <int dim, typename Cell>
   bool passes_through(const CrackGeometry<dim> &crack,
                       const Cell               &cell,
-                      const dealii::Point<dim> &p)
+                      const dealii::Point<dim> &p,
+                      const bool                to_sides)
   {
     constexpr double part = 1e-3;
     if (!crack.covers(p))
@@ -76,7 +78,7 @@ namespace PeriDeal
         along *= part * cell->diameter() / along.norm();
         for (const double sign : {-1., 1.})
           if (const dealii::Point<dim> q = p + sign * along;
-              !crack.covers(q) && !crack.is_closed_near(q) && !leaves_body(cell, q))
+              !crack.covers(q) && !crack.is_closed_near(q) && !(to_sides && leaves_body(cell, q)))
             return false;
       }
     return true;
@@ -92,9 +94,13 @@ namespace PeriDeal
    * stays. Pieces that meet have no tip there.
    *
    * @param cracks from make_open_geometries()
+   * @param mouths the same where a crack begins at a vertex on the side of the body: there are
+   *               bonds to the left of it that hold the vertex, which else only this cell has
    */
   template <int dim, typename Cell>
-  bool is_removed(const Cell &cell, const std::vector<CrackGeometry<dim>> &cracks)
+  bool is_removed(const Cell                            &cell,
+                  const std::vector<CrackGeometry<dim>> &cracks,
+                  const bool                             mouths = false)
   {
     const double same = 1e-6 * cell->diameter();
     for (const CrackGeometry<dim> &crack : cracks)
@@ -127,7 +133,7 @@ namespace PeriDeal
           middle += (p - dealii::Point<dim>()) / static_cast<double>(section.size());
         if (section.size() < dim)
           {
-            if (passes_through(crack, cell, middle))
+            if (passes_through(crack, cell, middle, mouths))
               return true;
             continue;
           }

@@ -6,15 +6,13 @@
 #include <perideal/base/archive.h>
 #include <perideal/operators/solid/elastic_operator.h>
 
-#include <optional>
 #include <vector>
 
 namespace PeriDeal
 {
   /**
    * Work of the loads and of the supports of a body along its way, by the trapezoidal rule: wrong
-   * by O(step^2). Where a prescribed unknown follows from others, too, the support's force works
-   * along what is prescribed alone. Vectors are allocated once.
+   * by O(step^2). Vectors are allocated once.
    */
   class WorkOfForces
   {
@@ -47,15 +45,11 @@ namespace PeriDeal
     void find_active();
     void find_load(const double t);
     void find_forces(const Vector &unbalanced);
-    bool find_following(const double t); // collective
-    void find_followed(const Vector &from, const Vector &to, const double t);
 
     ElasticOperator          &op;
     const std::vector<bool>   held;   // prescribed unknowns
     std::vector<unsigned int> active; // prescribed or loaded: elsewhere forces are zero
     bool                      begun = false;
     Vector                    load, forces, last_forces;
-    Vector                    followed, given; // of a step: the way of unknowns that follow others
-    std::optional<bool>       follow;          // there are such unknowns; once it is known
   };
 } // namespace PeriDeal

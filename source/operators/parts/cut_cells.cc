@@ -52,8 +52,8 @@ namespace PeriDeal
     for (const Cell &cell : cells)
       {
         const unsigned int index = cell->active_cell_index();
-        cut[index]               = !rule.in_mesh &&
-                     (rule.removes ? is_removed(cell, open) : PeriDeal::is_cut(cell, cracks));
+        cut[index] = !rule.in_mesh && (rule.removes ? is_removed(cell, open, rule.mouths) :
+                                                      PeriDeal::is_cut(cell, cracks));
         if (!damaged.empty())
           damaged[index] = false;
         if (!broken || (cut[index] && rule.removes))

@@ -78,8 +78,9 @@ namespace PeriDeal
             "Hold there what is whole, without the crack: 'Parts = ligament: " +
             name + " if FORMULA' and 'Displacement = ligament: " + held +
             "' in place of 'Symmetry = " + name +
-            "'; or take both halves of the body. 'Models = peridynamics' with 'Nodes = cell "
-            "centers' in section 'Domain' has no nodes in that plane, and takes such cracks.");
+            "'; or take both halves of the body. 'Models = peridynamics' with 'Nodes = cell centers' "
+            "(section 'Domain') and 'Surface correction = auto' (section 'Peridynamics') has no nodes "
+            "in that plane, and takes such cracks.");
     }
 
 

@@ -51,7 +51,9 @@ namespace PeriDeal
                      true,
                      body.cracks.contact_conductance,
                      [&body] { return body.horizon(); },
-                     body.cuts_in_part_at_tips()})
+                     body.cuts_in_part_at_tips(),
+                     zone_bonds && body.coupling.zone != ZoneKind::formula &&
+                       body.coupling.zone != ZoneKind::adaptive})
     , hanging(dofs, *nodes, dim)
     , mechanical(dofs, body, nodes, [this](const auto unknown) {
       return hanging.is_hanging(unknown);

@@ -28,8 +28,9 @@ namespace PeriDeal
     tau.reinit(nodes.partitioner());
     find_conditions(nodes);
     for (unsigned int k = 0; k < mass.locally_owned_size(); ++k)
-      mass.local_element(k) = mass_of(k / dim);
-    held_rows->move_mass(mass);
+      mass.local_element(k) =
+        nodes.volume(k / dim) *
+        (body.elasticity.is_static() ? 1. : body.material.density.value(position(k / dim)));
     find_stiffness_diagonal(solid, stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
     find_thermal_strains();
@@ -52,10 +53,10 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_conditions(const Nodes<dim> &nodes)
   {
-    const auto on_sides = HeldRows<dim>::nodes_on_sides(solid.families, body);
-    held_rows = std::make_unique<HeldRows<dim>>(solid.families, on_sides, body, this->unknowns);
-    if (held_rows->any())
-      completed.reinit(this->unknowns);
+    std::vector<NodeOnSide<dim>> on_sides;
+    for (const BoundaryShare &share : nodes.condition_shares())
+      if (share.inside)
+        on_sides.push_back({share.node, share.id, nodes.position(share.node)});
     std::vector<Point<dim>> positions;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       positions.push_back(nodes.position(i));
@@ -66,14 +67,6 @@ namespace PeriDeal
                                                                at_centers,
                                                                nodes.communicator());
     conditions->pin(positions, body, at_centers);
-  }
-
-
-  template <int dim>
-  double StateOperator<dim>::mass_of(const unsigned int node) const
-  {
-    return solid.families.nodes().volume(node) *
-           (body.elasticity.is_static() ? 1. : body.material.density.value(position(node)));
   }
 
 
@@ -180,11 +173,9 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::damping_force(Vector &y, const Vector &v) const
   {
-    const Vector &all = with_rows(v);
-    all.update_ghost_values();
-    sum_forces(y, all, false);
-    all.set_ghost_state(false);
-    held_rows->pass_on(y);
+    v.update_ghost_values();
+    sum_forces(y, v, false);
+    v.set_ghost_state(false);
     conditions->mask(y);
   }
 
@@ -253,8 +244,6 @@ namespace PeriDeal
     find_forces(reactions, u);
     contact->add_forces(reactions, u, 1.);
     reactions -= all_loads;
-    held_rows->pass_on(reactions);
-    held_rows->keep_share_of_side(reactions);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     conditions->add_reactions(reactions, sums);
     if (solid.beyond)
@@ -327,7 +316,7 @@ namespace PeriDeal
           });
         row += of_dilatations.local_element(i) * sum.norm();
         row += of_tangent ? contact->row_bound(i) : 0.;
-        largest = std::max(largest, factor * row / mass_of(i)); // without that of held rows
+        largest = std::max(largest, factor * row / mass.local_element(dim * i));
       }
     return Utilities::MPI::max(largest, nodes.communicator());
   }

@@ -40,6 +40,7 @@ namespace PeriDeal
       double                  contact; // conductance per area of a crack; negative: transmission
       std::function<double()> horizon; // asked only where a transmission lies between 0 and 1
       bool                    in_part = false; // ends of cracks remove cells in part
+      bool                    mouths  = false; // is_removed(): there are bonds about all cracks
     };
 
     /** No cell is cut yet. The dofs must outlive this. */

@@ -5,7 +5,6 @@
 
 #include <perideal/mesh/cell_corners.h>
 #include <perideal/operators/solid/bond_breaking.h>
-#include <perideal/operators/solid/held_rows.h>
 #include <perideal/operators/solid/short_range_contact.h>
 #include <perideal/operators/solid/solid_operator.h>
 #include <perideal/operators/solid/solid_tensors.h>
@@ -33,8 +32,6 @@ namespace PeriDeal
    * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a
    * rotation makes none (BondKinematics). q is that of the undeformed body. In motion what has no
    * bonds between it repels each other (ShortRangeContact).
-   *
-   * Between cell centers rows beside displaced sides follow others (HeldRows).
    *
    * Viscosity (Le 2014 eq 2.43) is K without the dilatations. Bonds are those of SolidBonds; which
    * break, BondBreaking decides.
@@ -64,11 +61,6 @@ namespace PeriDeal
     ForceBalance forces(const Vector &u, const double t) const override;
     double       energy(const Vector &u) const override;
     void         multiply(Vector &y, const Vector &x) const override;
-    void         apply(Vector &y, const Vector &x) const override;
-    void         distribute(Vector &u, const double t) const override;
-    void         residual(Vector &r, const Vector &u, const double t) const override;
-    void         unbalanced(Vector &r, const Vector &u, const double t) const override;
-    void         mechanical_loads(Vector &loads, const double t) const override;
     void         set_temperature_change(const Vector &nodal) override;
     void         damping_force(Vector &y, const Vector &v) const override;
     double       damping_bound() const override;
@@ -144,13 +136,6 @@ namespace PeriDeal
     using SolidOperator<dim>::scratch;
 
     void find_conditions(const Nodes<dim> &nodes);
-
-    /** x with rows that follow, of a displacement that is prescribed nowhere. Collective. */
-    const Vector &with_rows(const Vector &x) const;
-
-    /** Of one component of an owned node. */
-    double mass_of(const unsigned int node) const;
-
     void make_contact();
     void find_thermal_strains();
     void find_thermal_loads();
@@ -189,8 +174,6 @@ namespace PeriDeal
     SolidLoads<dim>                           loads;
     BondBreaking<dim>                         breakage;
     mutable typename BondBreaking<dim>::Count marks_of_surrogate{};
-    std::unique_ptr<HeldRows<dim>>            held_rows;
-    mutable Vector                            completed; // where there are such rows
     mutable Vector                            tau; // tau_i = c_i theta_i/q_i; 0 without dilatations
     mutable std::vector<CellCorner<dim>>      corners; // once they have been asked for
   };
