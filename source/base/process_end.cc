@@ -6,6 +6,7 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -39,6 +40,7 @@ namespace PeriDeal
     std::atomic<bool>   stoppable{false};
     std::atomic<int>    stop_signal{0}; // that a run has been asked to stop by
     std::atomic<time_t> stop_asked{0};  // when, in seconds
+    std::atomic<time_t> woken{-1000};   // by SIGCONT, when
 
     const char *const out_of_memory =
       "out of memory. `perideal check` tells what a scene needs; a coarser lattice, fewer 'Models' or a smaller 'Horizon ratio' need less.";
@@ -89,26 +91,59 @@ namespace PeriDeal
     }
 
 
+    time_t seconds_now()
+    {
+      timespec now = {};
+      clock_gettime(CLOCK_MONOTONIC, &now);
+      return now.tv_sec;
+    }
+
+
+    /**
+     * Open MPI's launcher, when it is interrupted, wakes its processes (SIGCONT), tells them to end
+     * (SIGTERM) and kills them a second later, unless odls_base_sigkill_timeout says otherwise.
+     */
+    void wake(int)
+    {
+      woken = seconds_now();
+    }
+
+
+    /** The alarm rings, see give_up(), shortly before the process is killed. */
+    void expect_to_be_killed()
+    {
+      const itimerval shortly_before = {{0, 0}, {0, 850000}};
+      setitimer(ITIMER_REAL, &shortly_before, nullptr);
+    }
+
+
     /** Whether the run will see to it. */
     bool is_request(const int signal)
     {
       constexpr time_t same_moment = 2;
-      timespec         now         = {};
-      clock_gettime(CLOCK_MONOTONIC, &now);
+      const time_t     now         = seconds_now();
       if (!stoppable.load())
         return false;
       if (stop_signal.load() != 0)
-        return now.tv_sec - stop_asked.load() <= same_moment;
-      stop_asked  = now.tv_sec;
+        return now - stop_asked.load() <= same_moment;
+      stop_asked  = now;
       stop_signal = signal;
+      say("\nperideal: stopping, by ");
+      say(name_of_request(signal));
+      if (signal == SIGTERM && now - woken.load() <= 1)
+        {
+          expect_to_be_killed();
+          say(" of the launcher ...\n");
+        }
+      else
+        say(", as soon as the state can be kept; once more ends at once ...\n");
       return true;
     }
 
 
-    void stop(int signal)
+    /** At once. What is written then was prepared. */
+    [[noreturn]] void end_now(const int signal)
     {
-      if (is_request(signal))
-        return;
       const Farewell *last = farewell.load();
       leave_in_order(last);
       say("\nperideal: stopped by ");
@@ -121,6 +156,13 @@ namespace PeriDeal
         }
       say("\n");
       _exit(static_cast<int>(ExitStatus::stopped));
+    }
+
+
+    void stop(int signal)
+    {
+      if (!is_request(signal))
+        end_now(signal);
     }
 
 
@@ -147,9 +189,14 @@ namespace PeriDeal
     }
 
 
-    /** Memory was refused, and nobody has come to say so. */
+    /**
+     * The launcher is about to kill this process, and its step is not done; or memory was refused,
+     * and nobody has come to say so.
+     */
     void give_up(int)
     {
+      if (const int signal = stop_signal.load(); signal != 0)
+        end_now(signal);
       prepare_to_speak();
       say("\nperideal: error: ");
       say(out_of_memory);
@@ -234,6 +281,7 @@ namespace PeriDeal
     for (const int signal : {SIGTERM, SIGINT, SIGUSR1})
       on(signal, stop, SA_RESTART);
     on(SIGALRM, give_up, 0);
+    on(SIGCONT, wake, SA_RESTART);
     std::signal(SIGXFSZ,
                 SIG_IGN); // a file that would grow beyond a limit: writing fails, which is checked
 #ifndef __SANITIZE_ADDRESS__ // it has handlers of its own

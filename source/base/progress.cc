@@ -24,16 +24,20 @@ namespace PeriDeal
     const double found  = spent * std::max(0., 1. - done) / done,
                  passed = std::max(0., spent - last),
                  span   = std::clamp(0.05 * (spent + found), 1., 30.);
+    // While nothing gets done less time passes than is needed: what is told may grow, not shrink.
+    const bool advances = done > last_done;
     if (shown < 0.)
       shown = found;
     else
       {
-        const double expected = std::max(0., shown - passed),
+        const double expected = advances ? std::max(0., shown - passed) : shown,
                      most     = std::pow(factor, passed / span);
         // Near the end a second more is no factor.
-        shown = std::clamp(found, expected / most, expected * most + (most - 1.));
+        shown =
+          std::clamp(found, advances ? expected / most : expected, expected * most + (most - 1.));
       }
-    last = spent;
+    last      = spent;
+    last_done = done;
     return shown;
   }
 

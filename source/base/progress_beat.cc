@@ -22,7 +22,7 @@ namespace PeriDeal
   {
     // What goes on in this process, told by steppers and solvers that know nobody who shows it.
     std::atomic<double>             time_reached{0.};
-    std::atomic<unsigned long long> steps_done{0}, bonds_broken{0};
+    std::atomic<unsigned long long> steps_done{0}, equilibria{0}, bonds_broken{0};
 
 
     struct Lock
@@ -72,6 +72,12 @@ namespace PeriDeal
   }
 
 
+  void tell_equilibrium()
+  {
+    equilibria.fetch_add(1, std::memory_order_relaxed);
+  }
+
+
   void tell_broken_bonds(const unsigned long long n)
   {
     bonds_broken.store(n, std::memory_order_relaxed);
@@ -85,6 +91,7 @@ namespace PeriDeal
     , last_told(made)
   {
     steps_done   = 0;
+    equilibria   = 0;
     bonds_broken = 0;
     pthread_condattr_t clock;
     pthread_condattr_init(&clock);
@@ -168,13 +175,15 @@ namespace PeriDeal
       if (n >= 0 && static_cast<std::size_t>(n) < size)
         n += std::snprintf(text + n, size - n, format, values...);
     };
-    const unsigned long long steps = steps_done, broken = bonds_broken;
+    const unsigned long long steps = steps_done, sought = equilibria, broken = bonds_broken;
     if (span.is_open() && steps > 0)
       add(": t = %.4g, step %llu", time_reached.load(), steps);
     if (doing[0] != '\0')
       add("%s %s", n > 0 ? "," : ":", doing);
     if (state[0] != '\0')
       add("%s %s", n > 0 ? "," : ":", state);
+    if (sought > 1)
+      add(", equilibrium %llu", sought);
     if (broken > 0)
       add(", %llu broken bonds", broken);
     add("; %s elapsed", elapsed);

@@ -55,9 +55,26 @@ namespace PeriDeal
     known   = summary;
     reached = until;
     folder.write(file_name, text_of(known, "running"));
+    prepare_farewell();
+  }
+
+
+  void SummaryFile::note_checkpoint(const std::string &file)
+  {
+    checkpoint = file;
+    if (folder.writes())
+      prepare_farewell();
+  }
+
+
+  void SummaryFile::prepare_farewell() const
+  {
     set_farewell(folder.directory() + "/" + file_name,
                  text_of(known, "stopped", "the process was told to end, or failed"),
-                 "Results in '" + folder.directory() + "': " + reached + ".");
+                 "Results in '" + folder.directory() + "': " + reached + "." +
+                   (checkpoint.empty() ?
+                      "" :
+                      " Its last state is kept in " + checkpoint + ": go on with --resume."));
   }
 
 

@@ -176,6 +176,7 @@ namespace PeriDeal
   void OutputControl<dim>::parse_write_times(const double end_time, const bool steady)
   {
     write_times.clear();
+    times_beyond_end.clear();
     const std::string &at = text("Write at"), &every = text("Write every");
     if (!at.empty() && !every.empty())
       error("Write every", "'Write at' is given, too: give one of the two.");
@@ -188,9 +189,10 @@ namespace PeriDeal
         const double time = parse_number(piece, where("Write at"));
         refuse(time < 0., "Write at", "the time " + piece + " is negative.");
         if (time > end_time * (1. + time_slack))
-          error("Write at",
-                "the time " + piece + " is beyond 'End time' in section 'Time', which is " +
-                  number_text(end_time) + ".");
+          {
+            times_beyond_end.push_back(time);
+            continue;
+          }
         write_times.push_back(std::min(time, end_time));
       }
     if (!every.empty())
@@ -205,6 +207,7 @@ namespace PeriDeal
         for (unsigned int k = 1; k * step < end_time * (1. - 1e-9); ++k)
           write_times.push_back(k * step);
       }
+    std::sort(times_beyond_end.begin(), times_beyond_end.end());
     std::sort(write_times.begin(), write_times.end());
     write_times.erase(std::unique(write_times.begin(), write_times.end()), write_times.end());
   }

@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/process_end.h>
+#include <perideal/base/step_break.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +38,8 @@ namespace PeriDeal
                                     [&](const double time) { return passed < time && time <= t; });
     passed            = t;
     ++n_asked;
-    if (n_asked < n_between && !passes)
+    const bool was_left = step_was_left(); // that there is something to be done is known, then
+    if (n_asked < n_between && !passes && !was_left)
       return Need::none;
     // What the first process finds by its clock holds for all; a signal may reach any.
     constexpr double    between_looks = 0.2, margin = 3.; // seconds; times the cost

@@ -159,6 +159,8 @@ namespace PeriDeal
     header.wall_time          = wall_time;
     const std::string problem = checkpoints.write(header, save);
     has_results               = has_results || problem.empty();
+    if (problem.empty())
+      summary_file.note_checkpoint(last_checkpoint());
     return problem;
   }
 

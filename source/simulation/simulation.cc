@@ -128,6 +128,11 @@ namespace PeriDeal
     with_formulas(communicator, [&] { check_sides(scene, *mesh); });
     check_points_of_parts(scene, *mesh, record->notes);
     problem_factory(scene).note_scene(scene, *mesh, record->notes);
+    if (const std::vector<double> &beyond = scene.output.times_beyond_end; !beyond.empty())
+      record->notes.push_back(
+        "'Write at' in section 'Output' has times beyond 'End time' in section 'Time', which is " +
+        number_text(scene.time.end_time) + ": nothing is written at t = " +
+        number_text(beyond.front()) + (beyond.size() == 1 ? "." : " and later."));
   }
 
 

@@ -3,14 +3,15 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/solvers/breaking_motion.h>
+#include <perideal/base/progress.h>
+include<perideal / solvers / breaking_motion.h>
 #include <perideal/solvers/step_tools.h>
 
 #include <cmath>
 
-namespace PeriDeal
+  namespace PeriDeal
 {
-  BreakingMotion::BreakingMotion(ElasticOperator &op, const double share)
+  BreakingMotion::BreakingMotion(ElasticOperator & op, const double share)
     : op(op)
     , share(share)
     , inverse_mass(inverse_capacity(op))
@@ -48,7 +49,7 @@ namespace PeriDeal
   }
 
 
-  unsigned int BreakingMotion::run(Vector &u, const double t)
+  unsigned int BreakingMotion::run(Vector & u, const double t)
   {
     constexpr double damping    = 0.011; // rate times stable step: a wave passes a horizon in two
     constexpr unsigned int wait = 54;    // stable steps without a break
@@ -62,6 +63,7 @@ namespace PeriDeal
     const unsigned int n_own   = velocity.locally_owned_size();
     const unsigned int n_quiet = std::lround(wait / share);
     unsigned int       n       = 0;
+    unsigned long long broken  = op.n_broken_bonds();
     op.update_contact(u);
     op.residual(residual, u, t);
     for (unsigned int quiet = 0; quiet < n_quiet; ++n)
@@ -78,8 +80,11 @@ namespace PeriDeal
             (velocity.local_element(i) + half * inverse_mass[i] * residual.local_element(i)) /
             (1. + slows);
         damped += 4. * slows * kinetic_energy();
-        const bool widened = op.widen_zone(u);
-        quiet              = op.break_bonds(u, t) > 0 ? 0 : quiet + 1;
+        const bool               widened = op.widen_zone(u);
+        const unsigned long long breaks  = op.break_bonds(u, t);
+        quiet                            = breaks > 0 ? 0 : quiet + 1;
+        if (breaks > 0)
+          tell_broken_bonds(broken += breaks);
         if (quiet == 0 || widened)
           op.residual(residual, u, t);
       }

@@ -5,6 +5,7 @@
 
 #include <perideal/base/node_loops.h>
 #include <perideal/base/progress.h>
+#include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/step_tools.h>
@@ -115,6 +116,11 @@ namespace PeriDeal
         return "chebyshev";
       }
 
+      bool steps_can_be_left() const override
+      {
+        return true;
+      }
+
       double current_step() const override
       {
         return dt > 0. ? dt : 0.;
@@ -212,6 +218,7 @@ namespace PeriDeal
         heat_entered += tau * tau * of_heat[0] * op.entering();
         for (std::size_t k = 2; k < coefficients.size(); ++k)
           {
+            leave_step_if_asked(u.get_mpi_communicator());
             op.apply_then(image, now, [&](const unsigned int begin, const unsigned int end) {
               NodeLoops::chebyshev_term(last.begin() + begin,
                                         sum.begin() + begin,

@@ -43,6 +43,11 @@ namespace PeriDeal
         return method;
       }
 
+      bool steps_can_be_left() const override
+      {
+        return true;
+      }
+
       double current_step() const override
       {
         return dt;

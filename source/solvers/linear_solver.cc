@@ -5,6 +5,7 @@
 #include <deal.II/lac/solver_gmres.h>
 
 #include <perideal/base/diverged.h>
+#include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/scene.h>
 #include <perideal/solvers/floating_part.h>
@@ -35,6 +36,7 @@ namespace PeriDeal
 
       void vmult(Vector &y, const Vector &x) const
       {
+        leave_step_if_asked(x.get_mpi_communicator());
         op.apply(y, x);
         if (b != 1.)
           y *= b;

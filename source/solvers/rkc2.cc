@@ -3,6 +3,7 @@
 
 #include <perideal/base/node_loops.h>
 #include <perideal/base/progress.h>
+#include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/step_bounds.h>
@@ -44,6 +45,11 @@ namespace PeriDeal
       std::string name() const override
       {
         return "rkc2";
+      }
+
+      bool steps_can_be_left() const override
+      {
+        return true;
       }
 
       double current_step() const override
@@ -149,6 +155,7 @@ namespace PeriDeal
         double heat_before = 0., heat_last = k.b[1] * k.w1 * h * entering;
         for (unsigned int j = 2; j <= s; ++j)
           {
+            leave_step_if_asked(u.get_mpi_communicator());
             const double mu = 2. * k.b[j] * k.w0 / k.b[j - 1], nu = -k.b[j] / k.b[j - 2],
                          mu_rate = 2. * k.b[j] * k.w1 / k.b[j - 1] * h,
                          gamma = -k.a[j - 1] * mu_rate, own = 1. - mu - nu;

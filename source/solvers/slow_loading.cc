@@ -5,6 +5,7 @@
 
 #include <perideal/base/diverged.h>
 #include <perideal/base/progress.h>
+#include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/slow_loading.h>
 #include <perideal/solvers/step_tools.h>
@@ -61,11 +62,12 @@ namespace PeriDeal
   }
 
 
-  void SlowLoading::solve(Vector &u, const double t)
+  void SlowLoading::solve(Vector &u, const double t, const bool may_be_left)
   {
     constexpr unsigned int   most     = 40; // nodes that go on to touch by turns hardly matter
     const unsigned long long n_broken = op.n_broken_bonds();
     tell_broken_bonds(n_broken);
+    tell_equilibrium();
     try
       {
         // Where faces of cracks touch follows from u.
@@ -73,6 +75,8 @@ namespace PeriDeal
           {
             if (round > 0)
               solver->operator_changed();
+            // What contact has changed by then cannot be undone.
+            const LeavableStep leavable(may_be_left && round == 0);
             iterations += solver->solve(u, t, size);
             op.distribute(u, t); // unknowns that follow from others
           }
@@ -210,13 +214,26 @@ namespace PeriDeal
                          const AfterStep &after_round,
                          const AfterStep &before_breaks)
   {
-    breaking.goal = t;
-    reach(u, before_breaks);
+    const double size_before = size, goal_before = breaking.goal;
+    for (bool is_there = false; !is_there;)
+      try
+        {
+          breaking.goal = t;
+          reach(u, before_breaks, after_round != nullptr);
+          is_there = true;
+        }
+      catch (const StepLeft &)
+        {
+          u             = last;
+          size          = size_before;
+          breaking.goal = goal_before;
+          after_round(now); // keeps the state, and stops
+        }
     go_on(u, after_round, before_breaks);
   }
 
 
-  void SlowLoading::reach(Vector &u, const AfterStep &before_breaks)
+  void SlowLoading::reach(Vector &u, const AfterStep &before_breaks, const bool may_be_left)
   {
     const double t = breaking.goal;
     last           = u;
@@ -231,7 +248,7 @@ namespace PeriDeal
       }
     else
       size = std::max(size, start_statics(op, u, t, options));
-    solve(u, t);
+    solve(u, t, may_be_left);
     const auto [end, most] = shorten(u);
     op.unbalanced(unbalanced, u, end);
     before.change = u;

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/diverged.h>
+#include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/step_bounds.h>
 #include <perideal/solvers/stepper.h>
@@ -55,7 +56,20 @@ namespace PeriDeal
     };
     while (!is_over())
       {
-        take_step(u);
+        const StepperCost spent_before   = spent;
+        const double      entered_before = heat_entered;
+        try
+          {
+            const LeavableStep leavable(after_step && steps_can_be_left());
+            take_step(u);
+          }
+        catch (const StepLeft &)
+          {
+            spent        = spent_before;
+            heat_entered = entered_before;
+            after_step(span.now); // keeps the state, and stops
+            continue;
+          }
         ++span.n_done;
         if (after_step && !is_over())
           after_step(span.now);

@@ -67,6 +67,24 @@ namespace
   }
 
 
+  TEST(RemainingTime, GrowsWhereNothingGetsDone)
+  {
+    // The last fifth takes two minutes in which bonds break: told each second.
+    RemainingTime remaining;
+    double        said = 0.;
+    for (int second = 4; second <= 10; ++second)
+      said = remaining.update(second, 0.08 * second);
+    EXPECT_LT(said, 3.);
+    for (int second = 11; second <= 130; ++second)
+      {
+        const double now = remaining.update(second, 0.8);
+        EXPECT_GE(now, said);
+        said = now;
+      }
+    EXPECT_GT(said, 0.5 * 130. / 4.);
+  }
+
+
   TEST(Progress, ALogHasALineInEachInterval)
   {
     setenv("PERIDEAL_PROGRESS", "lines", 1);

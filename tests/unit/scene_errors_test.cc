@@ -380,7 +380,6 @@ namespace PeriDeal
     expect_fault(fault(s, "Fields ="), s, "Fields", {"is empty"});
     expect_fault(fault(s, "Fields = vtu, none"), s, "Fields", {"stands alone"});
     expect_fault(fault(s, "Write at = -0.1"), s, "Write at", {"-0.1 is negative"});
-    expect_fault(fault(s, "Write at = 0.1, 1.1"), s, "Write at", {"1.1 is beyond 'End time'"});
     expect_fault(fault(s, "Write at = 0.1 0.2"), s, "Write at", {"not a number"});
     expect_fault(fault(s, "Write every = 0"), s, "Write every", {"greater than 0"});
     expect_fault(fault(s, "Write every = -1"), s, "Write every", {"greater than 0"});

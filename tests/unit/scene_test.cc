@@ -73,7 +73,7 @@ subsection Solver
 end
 subsection Output
   set Fields = hdf5
-  set Write at = 1.5, 0.5, 2, 0.5
+  set Write at = 1.5, 0.5, 7, 2, 0.5
   set Probes = 0,0.1 ; 0.5,0.1
   set Line = 0,-1 ; 0,1 ; 5
   set Grid = 2, 3 ; 1, 1
@@ -135,6 +135,7 @@ end
     EXPECT_FALSE(scene.output.vtu);
     EXPECT_TRUE(scene.output.hdf5);
     EXPECT_EQ(scene.output.write_times, (std::vector<double>{0.5, 1.5, 2.}));
+    EXPECT_EQ(scene.output.times_beyond_end, (std::vector<double>{7.}));
     EXPECT_EQ(scene.output.probes, (std::vector<std::vector<double>>{{0., 0.1}, {0.5, 0.1}}));
     ASSERT_EQ(scene.output.line.size(), 5u);
     EXPECT_EQ(scene.output.line[1], (std::vector<double>{0., -0.5}));

@@ -67,8 +67,10 @@ namespace PeriDeal
 
   /**
    * Whether a run asks stop_requested() often and stops in order then. Between true and false the
-   * first of the signals above is a request; one that comes more than two seconds later ends the
-   * process as before. (Who starts a run may send the same signal to it in several ways.)
+   * first of the signals above is a request, which is acknowledged at once; one that comes more
+   * than two seconds later ends the process as before. (Who starts a run may send the same signal
+   * to it in several ways.) Where Open MPI's launcher is interrupted, which kills its processes a
+   * second later, the process ends as before shortly before that.
    */
   void set_stoppable(const bool run_asks);
 

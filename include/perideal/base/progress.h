@@ -14,7 +14,7 @@ namespace PeriDeal
   /**
    * The time that a run still needs, from the share that is done. What it says follows the time
    * that passes, and changes besides by a factor of 1.5 in a twentieth of the whole run, or half a
-   * minute, at most, however unevenly a run advances.
+   * minute, at most, however unevenly a run advances. It does not shrink while nothing gets done.
    */
   class RemainingTime
   {
@@ -26,7 +26,7 @@ namespace PeriDeal
     double update(const double spent, const double done);
 
   private:
-    double shown = -1., last = 0.;
+    double shown = -1., last = 0., last_done = 0.;
   };
 
 
@@ -91,6 +91,9 @@ namespace PeriDeal
 
   /** To be called by steppers after each step: where they are. Costs nothing. */
   void tell_step(const double t);
+
+  /** To be called before an equilibrium is sought. Costs nothing. */
+  void tell_equilibrium();
 
   /** To be called as bonds break: how many of the body have. */
   void tell_broken_bonds(const unsigned long long n);

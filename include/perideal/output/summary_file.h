@@ -37,6 +37,9 @@ namespace PeriDeal
      */
     void update(const Json &summary, const std::string &reached);
 
+    /** A checkpoint has been written, which a process that is told to end names. */
+    void note_checkpoint(const std::string &file);
+
     void complete(const Json &summary);
 
     /** The run ends early. @param status `diverged` or `stopped` @param more of why, behind both */
@@ -46,8 +49,10 @@ namespace PeriDeal
     void exchange(Archive &archive);
 
   private:
+    void prepare_farewell() const;
+
     ResultFolder &folder;
     Json          known;
-    std::string   reached;
+    std::string   reached, checkpoint;
   };
 } // namespace PeriDeal

@@ -59,13 +59,14 @@ namespace PeriDeal
     bool vtu = true, hdf5 = true;
     std::vector<double>
       write_times; // sorted, without the end time unless given; from `Write at` and `Write every`
+    std::vector<double>              times_beyond_end; // of `Write at`, which are not written
     std::vector<std::vector<double>> probes;
     std::vector<std::vector<double>> line; // the points of the line, evenly spaced, ends included
     std::vector<std::vector<double>> grid; // from make_grid()
 
     /**
-     * Throws UserError. @param end_time last time written by `Write every`; times beyond it are an
-     * error.
+     * Throws UserError. @param end_time last time written; those of `Write at` beyond it are set
+     * aside.
      */
     void parse(const double end_time, const bool steady);
 

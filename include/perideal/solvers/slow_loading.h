@@ -136,8 +136,9 @@ namespace PeriDeal
       bool   any   = false;
     };
 
-    void solve(Vector &u, const double t);
-    void reach(Vector &u, const AfterStep &before_breaks);
+    /** @param may_be_left the caller puts u back where StepLeft is thrown */
+    void solve(Vector &u, const double t, const bool may_be_left = false);
+    void reach(Vector &u, const AfterStep &before_breaks, const bool may_be_left = false);
     /** Returns the time, and the largest stretch over the critical one then; 0: unknown. */
     std::pair<double, double> shorten(Vector &u);
 

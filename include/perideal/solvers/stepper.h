@@ -93,6 +93,15 @@ namespace PeriDeal
     virtual double expected_applications(const double time_span) const = 0;
 
     /**
+     * take_step() changes neither u nor what exchange() keeps, cost and what has entered apart,
+     * before its work is done: it may be left (LeavableStep).
+     */
+    virtual bool steps_can_be_left() const
+    {
+      return false;
+    }
+
+    /**
      * Of waves so fast that steps do not resolve them: what one of the steps may leave, as a factor
      * of their size; 0 where steps adapt, or damp them.
      */
