@@ -26,7 +26,32 @@ namespace PeriDeal
       }
     if (scene.elasticity.computes_temperature)
       columns.push_back("temperature");
+    if (!scene.elasticity.is_static())
+      for (unsigned int d = 0; d < dim; ++d)
+        columns.push_back(std::string("v") + "xyz"[d]);
     return columns;
+  }
+
+
+  template <int dim>
+  VelocitiesAtPoints<dim>::VelocitiesAtPoints(const Scene<dim>          &scene,
+                                              const PointEvaluator<dim> &reader,
+                                              const Vector              &velocity)
+  {
+    if (scene.elasticity.is_static())
+      return;
+    Vector with_ghosts(velocity);
+    with_ghosts.update_ghost_values();
+    for (unsigned int d = 0; d < dim; ++d)
+      components.push_back(reader.evaluate(with_ghosts, dim, d));
+  }
+
+
+  template <int dim>
+  void VelocitiesAtPoints<dim>::append_to(std::vector<double> &rows, const std::size_t point) const
+  {
+    for (const std::vector<double> &component : components)
+      rows.push_back(component[point]);
   }
 
 
@@ -45,6 +70,9 @@ namespace PeriDeal
   }
 
 
+  template class VelocitiesAtPoints<1>;
+  template class VelocitiesAtPoints<2>;
+  template class VelocitiesAtPoints<3>;
   template std::vector<std::string> solid_columns(const Scene<1> &);
   template std::vector<std::string> solid_columns(const Scene<2> &);
   template std::vector<std::string> solid_columns(const Scene<3> &);

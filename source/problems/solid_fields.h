@@ -101,4 +101,19 @@ namespace PeriDeal
 
   template <int dim>
   std::unique_ptr<SolidProblem<dim>> make_bond_solid(Model<dim> &model, const Scene<dim> &scene);
+
+  /** Of a body in motion, columns of tables of points behind all others; else none. */
+  template <int dim>
+  class VelocitiesAtPoints
+  {
+  public:
+    VelocitiesAtPoints(const Scene<dim>          &scene,
+                       const PointEvaluator<dim> &reader,
+                       const Vector              &velocity);
+
+    void append_to(std::vector<double> &rows, const std::size_t point) const;
+
+  private:
+    std::vector<std::vector<double>> components;
+  };
 } // namespace PeriDeal
