@@ -150,9 +150,9 @@ def header(study):
 def page_of(study, directory):
     """Draws the figures and returns the page."""
     page = Page(directory)
-    page.section("The study", "problem")
-    page.add(paragraphs(prose(study.get("text", ""))))
-    page.add(notes(study))
+    if about := paragraphs(prose(study.get("text", ""))) + notes(study):
+        page.section("The study", "problem")
+        page.add(about)
     chart = work_precision.read(directory)
     if chart:
         work_precision.add_to(page, chart)
