@@ -40,15 +40,15 @@ def shorten(text, length=30):
 
 
 def draw_material(axes, maps):
-    """Where the body is: its cells, so that holes and outlines show."""
+    """Where the body is: its cells, so that holes and outlines show. Whether it fills its box, and its outline if it does not."""
     run = maps.run
     if not run.summary["fields"]:
-        return False
+        return False, None
     for model in run.models:
         if run.field_file(0, model) is None:
             continue
         if draw_image(axes, run):
-            return True
+            return True, None
         view = maps.view()
         nodes = run.mesh(0, model).nodes
         picture = maps.picture(0, model, np.ones(len(nodes)), contours.segments_of(run.cracks(0)))
@@ -56,10 +56,12 @@ def draw_material(axes, maps):
         shades = np.zeros(picture.shape + (4,))
         shades[inside] = (0.933, 0.949, 0.965, 1)
         axes.imshow(shades, origin="lower", extent=view.extent, aspect="equal", zorder=1)
-        if not inside.all():
-            draw_outline(axes, run.mesh(0, model))
-        return bool(inside.all())
-    return True
+        if inside.all():
+            return True, None
+        outline = boundary_lines(run.mesh(0, model))
+        draw_outline(axes, outline)
+        return False, outline
+    return True, None
 
 
 def draw_image(axes, run):
@@ -87,9 +89,9 @@ def legend_of_phases(figure, run, size):
         x += 0.35 + 0.075 * len(text.get_text())
 
 
-def draw_outline(axes, mesh):
+def draw_outline(axes, outline):
     """The edge of the body."""
-    axes.add_collection(LineCollection(boundary_lines(mesh), colors="#52606d", linewidths=1.0, clip_on=False, zorder=2,
+    axes.add_collection(LineCollection(outline, colors="#52606d", linewidths=1.0, clip_on=False, zorder=2,
                                        capstyle="round"))
 
 
@@ -144,10 +146,20 @@ def draw_points(axes, run):
         break
 
 
-def draw_sides(axes, sides, lower, extent, width, height, room=None):
+def parts_of_side(line, outline):
+    """The lines of an outline that lie on a straight side; the whole side without an outline."""
+    if not outline:
+        return [line]
+    across, size = int(line[0][0] != line[1][0]), max(np.abs(line).max(), 1e-300)
+    pairs = [np.stack([part[:-1], part[1:]], axis=1) for part in outline]
+    pairs = np.concatenate(pairs)
+    return list(pairs[(np.abs(pairs[:, :, across] - line[0][across]) < 1e-6 * size).all(axis=1)])
+
+
+def draw_sides(axes, sides, lower, extent, width, height, room=None, outline=None):
     """The sides of a rectangle of so many inches in the colours of what holds there.
 
-    room: inches by which the text of a side is moved outwards.
+    room: inches by which the text of a side is moved outwards; outline: of a body that does not fill the rectangle.
     """
     for side, ends in BOX_SIDES.items():
         if side not in sides:
@@ -155,8 +167,8 @@ def draw_sides(axes, sides, lower, extent, width, height, room=None):
         color = side_color(sides[side])
         line = lower + np.array(ends) * extent
         closed = color == CLOSED
-        axes.plot(line[:, 0], line[:, 1], color=color, linewidth=1.4 if closed else 3.2,
-                  solid_capstyle="butt", clip_on=False, zorder=3)
+        axes.add_collection(LineCollection(parts_of_side(line, outline), colors=color, linewidths=1.4 if closed else 3.2,
+                                           capstyle="butt", clip_on=False, zorder=3))
         x, y, horizontal, vertical, turn = LABELS[side]
         away = (room or {}).get(side, 0.0)
         x += {"left": -away, "right": away}.get(side, 0.0) / width
@@ -187,9 +199,9 @@ def sketch_2d(maps, words):
     figure = style.figure(*size)
     axes = figure.add_axes([(0.95 + room["left"]) / size[0], (foot + room["bottom"]) / size[1],
                             width / size[0], height / size[1]])
-    full = draw_material(axes, maps)
+    full, outline = draw_material(axes, maps)
     sides = {side: text for side, text in run.sides(brief=True).items() if supports.is_side_of_box(run, side)}
-    draw_sides(axes, sides, lower, extent, width, height, room)
+    draw_sides(axes, sides, lower, extent, width, height, room, outline)
     if words.elastic:
         supports.draw_2d(axes, run, lower, extent, extent[0] / width,
                          {s: BOX_SIDES[s] for s in BOX_SIDES if s in sides})
