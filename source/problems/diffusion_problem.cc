@@ -9,6 +9,7 @@
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "diffusion_guards.h"
@@ -16,6 +17,7 @@
 #include "diffusion_parts.h"
 #include "diffusion_summary.h"
 #include "diffusion_totals.h"
+#include "step_forecast.h"
 #include "steps_with_formulas.h"
 
 namespace PeriDeal
@@ -276,16 +278,33 @@ namespace PeriDeal
       context.progress.line(this->name() + ":");
     if (scene.time.steady)
       {
+        // With a material that depends on the solution; each iteration with its preconditioner
+        // takes some 6 applications.
+        const double n_solves = op().depends_on_solution() ? 10. : 1.;
         if (says)
-          context.progress.line("  steady: one linear solve, about 20 iterations");
-        // Each iteration with its preconditioner takes some 6 applications.
-        return 20. * 6. * time_of_application(op());
+          context.progress.line(n_solves > 1. ?
+                                  "  steady: some 10 linear solves, about 20 iterations each" :
+                                  "  steady: one linear solve, about 20 iterations");
+        return n_solves * 20. * 6. * time_of_application(op());
       }
-    const double n    = expected_applications(times),
-                 time = n > 0. ? n * time_of_application(op()) : -1.;
+    double n = expected_applications(times), time = n > 0. ? n * time_of_application(op()) : -1.;
+    const Spectrum spectrum = op().spectrum();
+    double         n_steps  = 0.;
+    if (op().depends_on_solution())
+      {
+        const unsigned long long before = op().n_applications();
+        const StepForecast       forecast(
+          scene.time.end_time,
+          [&](const AfterStep &after_step) {
+            advance_through_events(scene.time.end_time, after_step);
+          },
+          this->dofs().get_communicator());
+        n_steps = forecast.n_steps();
+        time    = forecast.seconds();
+        n       = static_cast<double>(op().n_applications() - before) * forecast.whole_over_tried();
+      }
     if (!says)
       return time;
-    const Spectrum     spectrum = op().spectrum();
     std::ostringstream out;
     out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
         << spectrum.safe << "\n"
@@ -295,8 +314,10 @@ namespace PeriDeal
         << "  stepper: " << stepper->name();
     context.progress.line(out.str());
     if (n > 0.)
-      context.progress.line("  estimated: " + readable_count(static_cast<unsigned long long>(n)) +
-                            " operator applications, " + readable_duration(time));
+      context.progress.line(
+        "  estimated: " + (n_steps > 0. ? readable_count(std::llround(n_steps)) + " steps, " : "") +
+        readable_count(static_cast<unsigned long long>(n)) + " operator applications, " +
+        readable_duration(time));
     return time;
   }
 

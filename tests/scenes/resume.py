@@ -6,6 +6,7 @@
     resume.py running                               the same, while a crack runs through a blended zone that follows it
     resume.py ranks                                 the same, resumed on another number of processes
     resume.py mistakes                              nothing to resume, other scenes, damaged files
+    resume.py interrupted                           SIGINT to the whole process group within a step of seconds, on 1 and 2 processes
     resume.py signals                               stopped by SIGTERM and SIGKILL at random moments, on 1 and 2 processes (long)
 
 On the same number of processes all is the same to the last bit, also with solvers, whose preconditioner is made for what it was made for; there 1e-12 of
@@ -293,6 +294,45 @@ def check_mistakes():
     check("no results are written at t = 0.02" in result.stdout, "a time that was passed over is told")
 
 
+# Steps of seconds.
+LONG_STEPS = {
+    "chebyshev": ("quick_start.prm", {"Models": "peridynamics", "Domain/Cells": "600, 600", "Output/Write at": "", "Output/Fields": "none"}, 0),
+    "sdirk2": ("quick_start.prm", {"Models": "peridynamics", "Domain/Cells": "300, 300", "Output/Write at": "", "Output/Fields": "none", "Time/Stepper": "sdirk2",
+                                   "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT),
+}
+
+
+def check_interrupted():
+    """An interrupt is acknowledged at once, and the step is left: nothing of it is lost or counted."""
+    for name, (scene, settings, tolerance) in LONG_STEPS.items():
+        whole = new_folder()
+        check(run(scene, whole, settings).returncode == 0, scene)
+        for ranks in (1, 2):
+            what, folder = f"{name} on {ranks}", new_folder()
+            process = subprocess.Popen(command(scene, folder, settings, (), ranks), env=_environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       text=True, start_new_session=True)
+            while "stepper" not in process.stdout.readline() and process.poll() is None:
+                pass
+            time.sleep(0.7)
+            os.killpg(process.pid, signal.SIGINT)
+            start, said = time.monotonic(), ""
+            while "stopping" not in said and process.poll() is None:
+                said += process.stderr.readline()
+            acknowledged = time.monotonic() - start
+            _, rest = process.communicate(timeout=60)
+            check(acknowledged < 2., f"{what}: acknowledged after {acknowledged:.1f} s")
+            with open(os.path.join(folder, "summary.json")) as file:
+                check(json.load(file)["status"] == "stopped", f"{what}: the summary does not say stopped")
+            if ranks == 1:
+                check_stopped(Run("", process.returncode, "", said + rest), folder, what)
+            else:  # the launcher has a status of its own
+                check(process.returncode in (1, 3), f"{what}: exit status {process.returncode}")
+                check(bool(glob.glob(os.path.join(folder, "checkpoints", "*.h5"))), f"{what}: no checkpoint\n{said}{rest}")
+            check(run(scene, folder, settings, ["--resume"], ranks=ranks).returncode == 0, f"{what}: resumed")
+            found = compare(whole, folder, tolerance if ranks == 1 else 1e-10, what)
+            print(f"{what}: acknowledged after {acknowledged:.2f} s, difference {found:.1e}")
+
+
 def run_with_signals(kind, start, took, scene, settings, ranks):
     """A run that is ended at up to 5 random moments, after there is something to keep at start, and goes on each time: its folder and how often."""
     folder, more, n_stops = new_folder(), [], 0
@@ -358,6 +398,8 @@ if __name__ == "__main__":
             check_scene(*one)
     elif part == "running":
         check_running()
+    elif part == "interrupted":
+        check_interrupted()
     elif part == "ranks":
         check_ranks()
     elif part == "mistakes":
