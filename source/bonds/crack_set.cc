@@ -16,7 +16,7 @@ namespace PeriDeal
                           const CrackHistory<dim> &history,
                           const bool               cut_at_tips,
                           const double             contact_conductance,
-                          const Domain<dim>       *voids,
+                          const BodyVoids<dim>    *voids,
                           const double             transmission_of_broken,
                           const bool               in_part_at_tips)
     : neighbors(neighbors)
@@ -232,8 +232,20 @@ namespace PeriDeal
   template <int dim>
   bool CrackSet<dim>::leaves_body(const unsigned int node, const unsigned int neighbor) const
   {
-    return voids != nullptr && neighbors.is_real(neighbor) &&
-           voids->leaves_body(neighbors.position(node), neighbors.position(neighbor));
+    if (voids == nullptr || !voids->is_near(node, neighbors.weights().reach()))
+      return false;
+    if (neighbors.is_real(neighbor))
+      return voids->between(node, neighbor);
+    return voids->before_site(node,
+                              neighbors.outside()[neighbor - neighbors.nodes().n_local()].site);
+  }
+
+
+  template <int dim>
+  bool CrackSet<dim>::leaves_body(const unsigned int                  node,
+                                  const typename Lattice<dim>::Index &site) const
+  {
+    return voids != nullptr && voids->before_site(node, site);
   }
 
 
@@ -285,7 +297,7 @@ namespace PeriDeal
     // Bonds that have broken are the node's own; who asks farther away has to look everywhere.
     const bool near_broken = !broken_bonds.empty() && (distance > neighbors.weights().reach() ||
                                                        broken_bonds.touch(global(node)));
-    if (voids != nullptr || near_broken)
+    if (near_broken || (voids != nullptr && voids->is_near(node, distance)))
       return true;
     for (std::size_t k = 0; k < soft_cracks.size(); ++k)
       if (is_near_soft(k, node, distance))

@@ -80,13 +80,12 @@ namespace PeriDeal
                           const HasBonds            &has_bonds)
     : of_bonds(kernel_weights(nodes, body))
     , topology(nodes, of_bonds, {halo_reach(nodes, body, of_bonds), halo})
+    , voids(make_body_voids(nodes, body, of_bonds))
     , crack_set(topology,
                 body.crack_history(),
                 cuts_at_tips(body, halo),
                 body.cracks.contact_conductance,
-                body.peridynamics.across_voids == BondsAcrossVoids::cut && body.domain.has_voids() ?
-                  &body.domain :
-                  nullptr,
+                voids.get(),
                 body.broken_bonds_conduct,
                 body.cuts_in_part_at_tips())
   {

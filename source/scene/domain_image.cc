@@ -224,48 +224,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool Domain<dim>::leaves_body(const Point<dim> &a, const Point<dim> &b) const
-  {
-    // Between two crossings of lattice planes the way stays in one cell, or on the edge of several.
-    const Tensor<1, dim> h = spacing();
-    std::vector<double>  crossings{0., 1.};
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        const double from = (a[d] - lower[d]) / h[d], to = (b[d] - lower[d]) / h[d];
-        for (double k = std::ceil(std::min(from, to)); k < std::max(from, to); ++k)
-          if (k > std::min(from, to))
-            crossings.push_back((k - from) / (to - from));
-      }
-    std::sort(crossings.begin(), crossings.end());
-    constexpr double slack = 1e-7;
-    for (std::size_t k = 1; k < crossings.size(); ++k)
-      {
-        if (crossings[k] - crossings[k - 1] < slack)
-          continue;
-        const double     s = 0.5 * (crossings[k] + crossings[k - 1]);
-        const Point<dim> p(a + s * (b - a));
-        bool             exists = false;
-        for (unsigned int side = 0; side < (1u << dim); ++side)
-          {
-            Point<dim> center;
-            bool       inside = true;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const double i =
-                  std::floor((p[d] - lower[d]) / h[d] + ((side >> d) % 2 == 1 ? slack : -slack));
-                inside    = inside && i >= 0. && i < cells[d];
-                center[d] = lower[d] + (i + 0.5) * h[d];
-              }
-            exists = exists || (inside && has_cell_at(center));
-          }
-        if (!exists)
-          return true;
-      }
-    return false;
-  }
-
-
-  template <int dim>
   bool Domain<dim>::has_voids() const
   {
     return shape == Shape::plate_with_hole || (image && image->has_voids());
@@ -357,8 +315,6 @@ namespace PeriDeal
   template void     Domain<dim>::refuse_image_entries() const;                              \
   template void     Domain<dim>::set_size_of_image();                                       \
   template void     Domain<dim>::parse_image();                                             \
-  template bool     Domain<dim>::leaves_body(const Point<dim> &, const Point<dim> &) const; \
-  template bool     Domain<dim>::has_cell_at(const Point<dim> &) const;                     \
   template bool     Domain<dim>::has_voids() const;                                         \
   template void     Domain<dim>::declare_extra_layers();                                    \
   template void     Domain<dim>::parse_extra_layers();                                      \

@@ -61,7 +61,7 @@ namespace PeriDeal
       std::vector<Offset> list{{{1, 0}}, {{0, 1}}};
       if (runs(scene, ModelKind::finite_elements) || runs(scene, ModelKind::coupled) ||
           scene.peridynamics.treatment == BoundaryTreatment::exchange ||
-          scene.peridynamics.across_voids == BondsAcrossVoids::cut)
+          scene.peridynamics.across_voids != BondsAcrossVoids::keep)
         return list;
       const Tensor<1, 2> h       = scene.domain.spacing();
       const double       horizon = reach_of_bonds(scene);
@@ -406,7 +406,7 @@ namespace PeriDeal
       const PhaseMap &map = *scene.domain.image;
       if (!runs(scene, ModelKind::peridynamics) || !map.has_voids() ||
           scene.peridynamics.treatment == BoundaryTreatment::exchange ||
-          scene.peridynamics.across_voids == BondsAcrossVoids::cut)
+          scene.peridynamics.across_voids != BondsAcrossVoids::keep)
         return;
       const double horizon  = reach_of_bonds(scene);
       std::size_t  n_places = 0;
@@ -433,7 +433,7 @@ namespace PeriDeal
           "peridynamics: in " + std::to_string(n_places) +
           " places of rows and columns bonds reach across a void of up to " +
           std::to_string(widest) + (widest == 1 ? " cell" : " cells") +
-          ", which is no gap to them. 'Bonds across voids = cut' (section 'Peridynamics') makes it one, and so does a smaller horizon or more cells ('Cells per pixel' in section 'Domain').");
+          ", which is no gap to them. 'Bonds across voids = auto' (section 'Peridynamics') makes it one, and so does a smaller horizon or more cells ('Cells per pixel' in section 'Domain').");
     }
   } // namespace
 

@@ -134,8 +134,8 @@ namespace PeriDeal
       EntryType::choice,
       "auto",
       "",
-      "Bonds that lead through a hole or an empty part of an image: `keep` them, so that a void narrower than the horizon is no gap, or "
-      "`cut` them. `auto`: cut with `Boundary treatment = exchange`, which never has them, else kept.",
+      "Bonds whose straight way leaves the body, through a hole, a slit, a notch or an empty part of an image, on lattices and meshes: `cut` them, as `auto` does, "
+      "or `keep` them, so that a void narrower than the horizon is no gap; `Boundary treatment = exchange` never has them.",
       {"auto", "keep", "cut"});
   }
 

@@ -3,12 +3,12 @@
 
 #pragma once
 
+#include <perideal/bonds/body_voids.h>
 #include <perideal/bonds/bond_conductivities.h>
 #include <perideal/bonds/broken_bonds.h>
 #include <perideal/scene/change_set.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/crack_history.h>
-#include <perideal/scene/domain.h>
 
 #include <utility>
 #include <vector>
@@ -36,7 +36,7 @@ namespace PeriDeal
              const CrackHistory<dim> &history,
              const bool               cut_at_tips,
              const double             contact_conductance,
-             const Domain<dim>       *voids,
+             const BodyVoids<dim>    *voids,
              const double             transmission_of_broken = 1.,
              const bool               in_part_at_tips        = false);
 
@@ -76,7 +76,13 @@ namespace PeriDeal
                         const unsigned int                         neighbor,
                         std::vector<std::pair<unsigned int, int>> &crossed) const;
 
-    /** Whether some crack is within a distance of a node; with voids always. */
+    /** Whether the way from a node to a site of a lattice beyond flat sides leads through voids. */
+    bool leaves_body(const unsigned int node, const typename Lattice<dim>::Index &site) const;
+
+    /** Whether the way between two real nodes leads through voids. */
+    bool leaves_body(const unsigned int node, const unsigned int neighbor) const;
+
+    /** Whether some crack or void is within a distance of a node. */
     bool is_near(const unsigned int node, const double distance) const;
 
     /** Take the cracks after a change, and the bonds that it has broken. */
@@ -103,8 +109,6 @@ namespace PeriDeal
     void   make_soft_cracks();
     double spacing_along(const CrackPiece<dim> &piece) const; // of the nodes, along a crack
     bool   is_near_soft(const std::size_t k, const unsigned int node, const double distance) const;
-    bool   leaves_body(const unsigned int node, const unsigned int neighbor) const;
-
     /** What is left of a bond that may have broken. */
     double kept_of_broken(const unsigned int node, const unsigned int neighbor) const;
 
@@ -118,7 +122,7 @@ namespace PeriDeal
     const CrackHistory<dim>         past;
     const bool                      cut_at_tips;
     const double                    contact_conductance;
-    const Domain<dim>              *voids;
+    const BodyVoids<dim>           *voids;
     const bool                      in_part;
     double                          time; // the representative one
     std::vector<CrackGeometry<dim>> cracks;

@@ -83,6 +83,9 @@ namespace PeriDeal
     // Each refers to those above it.
     KernelWeights<dim> of_bonds;
     Neighbors<dim>     topology;
-    CrackSet<dim>      crack_set;
+
+    std::unique_ptr<const BodyVoids<dim>> voids; // that bonds must not cross, if any
+
+    CrackSet<dim> crack_set;
   };
 } // namespace PeriDeal

@@ -170,12 +170,6 @@ namespace PeriDeal
      */
     bool has_cell_at(const dealii::Point<dim> &center) const;
 
-    /**
-     * Whether the straight way between two points of the lattice leads through cells that do not
-     * exist. Along edges of cells one side has to exist.
-     */
-    bool leaves_body(const dealii::Point<dim> &a, const dealii::Point<dim> &b) const;
-
     /** Whether cells of the lattice are missing. */
     bool has_voids() const;
 

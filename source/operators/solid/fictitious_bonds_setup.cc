@@ -134,6 +134,8 @@ namespace PeriDeal
     for (const auto &[xi, g] : around)
       {
         const BoundaryImage<dim> &image = beyond[g];
+        if (families.cracks().leaves_body(i, image.origin))
+          continue;
         // As on a lattice.
         const bool cut = !families.cracks().empty() &&
                          is_cut(i, image.terms, [&](const Term &) { return image.twice_planes; });
@@ -181,6 +183,8 @@ namespace PeriDeal
         const auto twice_planes = [&](const Term &term) {
           return Point<dim>(lattice.position(index) + (nodes.position(term.node) - Point<dim>()));
         };
+        if (near_crack && families.cracks().leaves_body(i, index))
+          continue;
         const bool cut = near_crack && is_cut(i, site.terms, twice_planes);
         if (cut && !(site.terms.size() == 1 &&
                      is_separated(i, site.terms[0], twice_planes(site.terms[0]))))

@@ -1,0 +1,496 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/bonds/body_voids.h>
+#include <perideal/bonds/point_bins.h>
+#include <perideal/mesh/mesh_builder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Of a lattice: cells that do not exist. */
+    template <int dim>
+    class MissingCells : public BodyVoids<dim>
+    {
+    public:
+      using Index = typename Lattice<dim>::Index;
+
+      MissingCells(const Nodes<dim>         &nodes,
+                   const Domain<dim>        &domain,
+                   const KernelWeights<dim> &weights)
+        : nodes(nodes)
+        , domain(domain)
+        , lattice(*nodes.lattice())
+        , reach(weights.reach_in_sites())
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          n_cells[d] = lattice.at_centers ? lattice.n_sites[d] : lattice.n_sites[d] - 1;
+        find_cells();
+        find_ways(weights.members());
+      }
+
+      bool is_near(const unsigned int node, const double distance) const override
+      {
+        if (nodes.n_local() == 0)
+          return false;
+        const Index center = lattice.index(nodes.position(node));
+        Index       from, to;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const int far = static_cast<int>(std::ceil(distance / lattice.spacing[d])) + 1;
+            from[d]       = std::clamp(center[d] - far, first[d], last[d]) - first[d];
+            to[d]         = std::clamp(center[d] + far, first[d], last[d]) - first[d];
+          }
+        // How many are missing in a block, from sums over blocks that begin in the first corner.
+        long sum = 0;
+        for (unsigned int corner = 0; corner < (1u << dim); ++corner)
+          {
+            Index place;
+            int   sign = 1;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                place[d] = (corner >> d) & 1 ? to[d] : from[d];
+                sign     = (corner >> d) & 1 ? sign : -sign;
+              }
+            sum += sign * static_cast<long>(sums[number(place)]);
+          }
+        return sum != 0;
+      }
+
+      bool between(const unsigned int node, const unsigned int neighbor) const override
+      {
+        return leaves(lattice.index(nodes.position(node)), lattice.index(nodes.position(neighbor)));
+      }
+
+      bool before_site(const unsigned int node, const Index &site) const override
+      {
+        return leaves(lattice.index(nodes.position(node)), site);
+      }
+
+    private:
+      /** A part of a way that stays in one cell, or on the edge of several: these, relatively. */
+      using Part = std::vector<Index>;
+
+      std::size_t number(const Index &place) const
+      {
+        std::size_t n = 0;
+        for (unsigned int d = dim; d-- > 0;)
+          n = n * (last[d] - first[d] + 1) + place[d];
+        return n;
+      }
+
+      /** Cells around the nodes known here, and how many are missing in blocks of them. */
+      void find_cells()
+      {
+        first.fill(0);
+        last.fill(0);
+        for (unsigned int i = 0; i < nodes.n_local(); ++i)
+          {
+            const Index site = lattice.index(nodes.position(i));
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                first[d] = i == 0 ? site[d] : std::min(first[d], site[d]);
+                last[d]  = i == 0 ? site[d] : std::max(last[d], site[d]);
+              }
+          }
+        // The cell below a site has its number in `sums`; the first of each direction is empty.
+        std::size_t n = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            if (lattice.at_centers)
+              ++last[d];
+            n *= last[d] - first[d] + 1;
+          }
+        sums.assign(n, 0);
+        for (std::size_t k = 0; k < n; ++k)
+          {
+            Index       place, cell;
+            std::size_t rest = k;
+            bool        edge = false;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const int width = last[d] - first[d] + 1;
+                place[d]        = static_cast<int>(rest % width);
+                rest /= width;
+                cell[d] = first[d] + place[d] - 1;
+                edge    = edge || place[d] == 0;
+              }
+            if (edge)
+              continue;
+            int sum = domain.has_cell_at(center_of(cell)) ? 0 : 1;
+            for (unsigned int corner = 1; corner < (1u << dim); ++corner)
+              {
+                Index other = place;
+                int   sign  = -1;
+                for (unsigned int d = 0; d < dim; ++d)
+                  if ((corner >> d) & 1)
+                    {
+                      --other[d];
+                      sign = -sign;
+                    }
+                sum += sign * static_cast<int>(sums[number(other)]);
+              }
+            sums[k] = sum;
+          }
+      }
+
+      Point<dim> center_of(const Index &cell) const
+      {
+        Point<dim> center;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double s = (cell[d] + 0.5) / n_cells[d];
+            center[d]      = lattice.lower[d] * (1. - s) + lattice.upper[d] * s;
+          }
+        return center;
+      }
+
+      /** Beyond the sides the body is mirrored. */
+      bool exists(Index cell) const
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            if (cell[d] < 0)
+              cell[d] = -1 - cell[d];
+            if (cell[d] >= n_cells[d])
+              cell[d] = 2 * n_cells[d] - 1 - cell[d];
+            if (cell[d] < 0)
+              return true; // a body that is narrower than the way
+          }
+        return domain.has_cell_at(center_of(cell));
+      }
+
+      /**
+       * The parts of a way between two sites, which lie on vertices or in the middle of cells:
+       * those between two crossings of lattice planes.
+       */
+      std::vector<Part> way_along(const Index &offset) const
+      {
+        const double        shift = lattice.at_centers ? 0.5 : 0.; // of the site in its cell
+        std::vector<double> crossings{0., 1.};
+        for (unsigned int d = 0; d < dim; ++d)
+          for (int k = 1; k <= std::abs(offset[d]); ++k)
+            crossings.push_back((k - shift) / std::abs(offset[d]));
+        std::sort(crossings.begin(), crossings.end());
+        constexpr double  slack = 1e-7;
+        std::vector<Part> parts;
+        for (std::size_t k = 1; k < crossings.size(); ++k)
+          {
+            if (crossings[k] - crossings[k - 1] < slack || crossings[k - 1] > 1. - slack)
+              continue;
+            const double s = 0.5 * (crossings[k] + crossings[k - 1]);
+            Part         part;
+            for (unsigned int side = 0; side < (1u << dim); ++side)
+              {
+                Index cell;
+                for (unsigned int d = 0; d < dim; ++d)
+                  cell[d] = static_cast<int>(
+                    std::floor(shift + s * offset[d] + ((side >> d) & 1 ? slack : -slack)));
+                if (std::find(part.begin(), part.end(), cell) == part.end())
+                  part.push_back(cell);
+              }
+            parts.push_back(part);
+          }
+        return parts;
+      }
+
+      std::size_t way_number(const Index &offset) const
+      {
+        std::size_t n = 0;
+        for (unsigned int d = dim; d-- > 0;)
+          {
+            if (std::abs(offset[d]) > reach[d])
+              return ways.size();
+            n = n * (2 * reach[d] + 1) + (offset[d] + reach[d]);
+          }
+        return n;
+      }
+
+      void find_ways(const std::vector<FamilyMember<dim>> &members)
+      {
+        std::size_t n = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          n *= 2 * reach[d] + 1;
+        ways.resize(n);
+        for (const FamilyMember<dim> &member : members)
+          ways[way_number(member.offset)] = way_along(member.offset);
+      }
+
+      bool leaves(const Index &site, const Index &other) const
+      {
+        Index offset;
+        for (unsigned int d = 0; d < dim; ++d)
+          offset[d] = other[d] - site[d];
+        const std::size_t n      = way_number(offset);
+        const auto        leaves = [&](const std::vector<Part> &parts) {
+          return std::any_of(parts.begin(), parts.end(), [&](const Part &part) {
+            return std::none_of(part.begin(), part.end(), [&](Index cell) {
+              for (unsigned int d = 0; d < dim; ++d)
+                cell[d] += site[d];
+              return exists(cell);
+            });
+          });
+        };
+        return n < ways.size() && !ways[n].empty() ? leaves(ways[n]) : leaves(way_along(offset));
+      }
+
+      const Nodes<dim>              &nodes;
+      const Domain<dim>             &domain;
+      const Lattice<dim>            &lattice;
+      const Index                    reach; // of the members
+      Index                          n_cells, first, last;
+      std::vector<unsigned int>      sums;
+      std::vector<std::vector<Part>> ways; // of the members, by offset
+    };
+
+
+    /** Of any other mesh: its faces on the boundary, as segments or triangles. */
+    template <int dim>
+    class BoundaryFaces : public BodyVoids<dim>
+    {
+    public:
+      BoundaryFaces(const Nodes<dim> &nodes, const double reach)
+        : nodes(nodes)
+        , reach(reach)
+        , tiny(1e-7 * nodes.smallest_spacing())
+        , bins(reach)
+      {
+        gather();
+        double size = 0.;
+        for (const Facet &facet : facets)
+          for (const Point<dim> &corner : facet.corners)
+            size = std::max(size, corner.distance(facet.corners[0]));
+        bins = PointBins<dim>(reach + size);
+        for (unsigned int f = 0; f < facets.size(); ++f)
+          bins.add(facets[f].corners[0], f);
+        for (unsigned int i = 0; i < nodes.n_local(); ++i)
+          close.push_back(has_facet_ahead(i));
+      }
+
+      bool is_near(const unsigned int node, const double distance) const override
+      {
+        return distance > reach * (1. + 1e-9) ? !facets.empty() : close[node];
+      }
+
+      bool between(const unsigned int node, const unsigned int neighbor) const override
+      {
+        if (!close[node] || !close[neighbor])
+          return false;
+        // From one end, whichever is asked for, so that both directions agree to the last digit.
+        const Point<dim> a = nodes.position(node), b = nodes.position(neighbor);
+        for (unsigned int d = 0; d < dim; ++d)
+          if (a[d] != b[d])
+            return a[d] < b[d] ? leaves(a, b) : leaves(b, a);
+        return false;
+      }
+
+      bool before_site(const unsigned int, const typename Lattice<dim>::Index &) const override
+      {
+        return false; // there are no sites
+      }
+
+    private:
+      struct Facet
+      {
+        std::array<Point<dim>, dim> corners;
+        Tensor<1, dim>              normal; // outwards
+
+        double height(const Point<dim> &p) const
+        {
+          return normal * (p - corners[0]);
+        }
+      };
+
+      static Tensor<1, dim> area_vector(const std::array<Point<dim>, dim> &corners)
+      {
+        Tensor<1, dim> normal;
+        if constexpr (dim == 2)
+          {
+            normal[0] = corners[1][1] - corners[0][1];
+            normal[1] = corners[0][0] - corners[1][0];
+          }
+        else if constexpr (dim == 3)
+          normal = cross_product_3d(corners[1] - corners[0], corners[2] - corners[0]);
+        return normal;
+      }
+
+      void gather()
+      {
+        std::vector<double> numbers;
+        for (const auto &cell : nodes.dof_handler().active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != crack_boundary_id)
+                for (unsigned int piece = 0; piece < (dim == 3 ? 2 : 1); ++piece)
+                  add_facet(cell, f, piece, numbers);
+        for (const auto &list : Utilities::MPI::all_gather(nodes.communicator(), numbers))
+          for (std::size_t n = 0; n < list.size();)
+            {
+              Facet facet;
+              for (Point<dim> &corner : facet.corners)
+                for (unsigned int d = 0; d < dim; ++d)
+                  corner[d] = list[n++];
+              facet.normal = area_vector(facet.corners);
+              if (facet.normal.norm() > 0.)
+                {
+                  facet.normal /= facet.normal.norm();
+                  facets.push_back(facet);
+                }
+            }
+        // In an order that does not depend on who owns what.
+        std::sort(facets.begin(), facets.end(), [](const Facet &a, const Facet &b) {
+          for (unsigned int k = 0; k < dim; ++k)
+            for (unsigned int d = 0; d < dim; ++d)
+              if (a.corners[k][d] != b.corners[k][d])
+                return a.corners[k][d] < b.corners[k][d];
+          return false;
+        });
+      }
+
+      template <typename Cell>
+      void add_facet(const Cell          &cell,
+                     const unsigned int   f,
+                     const unsigned int   piece,
+                     std::vector<double> &numbers) const
+      {
+        static constexpr unsigned int halves[2][3] = {{0, 1, 2}, {1, 3, 2}};
+        std::array<Point<dim>, dim>   corners;
+        for (unsigned int k = 0; k < dim; ++k)
+          corners[k] = cell->face(f)->vertex(dim == 3 ? halves[piece][k] : k);
+        if (dim > 1 && area_vector(corners) * (cell->face(f)->center() - cell->center()) < 0.)
+          std::swap(corners[0], corners[dim - 1]);
+        for (const Point<dim> &corner : corners)
+          for (unsigned int d = 0; d < dim; ++d)
+            numbers.push_back(corner[d]);
+      }
+
+      /** Beyond whose plane a node of the body within the reach may lie. */
+      bool has_facet_ahead(const unsigned int node) const
+      {
+        const Point<dim> &p   = nodes.position(node);
+        bool              any = false;
+        bins.visit_near(p, [&](const unsigned int f) {
+          any = any || distance_to(facets[f], p) < reach * (1. + 1e-9);
+        });
+        return any;
+      }
+
+      static double distance_to_segment(const Point<dim> &p,
+                                        const Point<dim> &a,
+                                        const Point<dim> &b)
+      {
+        const double t = std::clamp(((p - a) * (b - a)) / (b - a).norm_square(), 0., 1.);
+        return p.distance(a + t * (b - a));
+      }
+
+      /** Whether a point of the plane of a facet lies on it; its rim belongs to it. */
+      bool covers(const Facet &facet, const Point<dim> &p) const
+      {
+        if constexpr (dim == 2)
+          return distance_to_segment(p, facet.corners[0], facet.corners[1]) < tiny;
+        else if constexpr (dim == 3)
+          for (unsigned int k = 0; k < 3; ++k)
+            {
+              const Point<3>    &a = facet.corners[k], &b = facet.corners[(k + 1) % 3];
+              const Tensor<1, 3> inwards = cross_product_3d(facet.normal, b - a);
+              if (inwards * (p - a) < -tiny * inwards.norm())
+                return false;
+            }
+        return true;
+      }
+
+      double distance_to(const Facet &facet, const Point<dim> &p) const
+      {
+        const double height = facet.height(p);
+        if (covers(facet, Point<dim>(p - height * facet.normal)))
+          return std::abs(height);
+        double smallest = p.distance(facet.corners[0]);
+        for (unsigned int k = 0; dim > 1 && k < dim; ++k)
+          smallest =
+            std::min(smallest,
+                     distance_to_segment(p, facet.corners[k], facet.corners[(k + 1) % dim]));
+        return smallest;
+      }
+
+      /** By the nearest facet; where several are as near, that which sees the point best. */
+      bool is_outside(const Point<dim> &p) const
+      {
+        double smallest = std::numeric_limits<double>::max(), height = 0.;
+        bins.visit_near(p, [&](const unsigned int f) {
+          const double distance = distance_to(facets[f], p), own = facets[f].height(p);
+          if (distance < smallest - tiny ||
+              (distance < smallest + tiny && std::abs(own) > std::abs(height)))
+            height = own;
+          smallest = std::min(smallest, distance);
+        });
+        return smallest > 2. * tiny && smallest < std::numeric_limits<double>::max() && height > 0.;
+      }
+
+      bool leaves(const Point<dim> &a, const Point<dim> &b) const
+      {
+        // Where the way meets the boundary; what lies between two such places is inside or not.
+        std::vector<double> places;
+        bins.visit_near(a, [&](const unsigned int f) {
+          const double from = facets[f].height(a), to = facets[f].height(b);
+          if ((from <= tiny && to <= tiny) || (from > tiny && to > tiny))
+            return;
+          const double s = std::clamp(from / (from - to), 0., 1.);
+          if (covers(facets[f], Point<dim>(a + s * (b - a))))
+            places.push_back(s);
+        });
+        if (places.empty())
+          return false;
+        places.push_back(0.);
+        places.push_back(1.);
+        std::sort(places.begin(), places.end());
+        constexpr double slack = 1e-6;
+        for (std::size_t k = 1; k < places.size(); ++k)
+          if (places[k] - places[k - 1] > slack &&
+              is_outside(Point<dim>(a + 0.5 * (places[k] + places[k - 1]) * (b - a))))
+            return true;
+        return false;
+      }
+
+      const Nodes<dim>  &nodes;
+      const double       reach, tiny;
+      std::vector<Facet> facets;
+      PointBins<dim>     bins;
+      std::vector<bool>  close; // of the nodes known here: a facet is within the reach
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::unique_ptr<BodyVoids<dim>> make_body_voids(const Nodes<dim>          &nodes,
+                                                  const BodyParameters<dim> &body,
+                                                  const KernelWeights<dim>  &weights)
+  {
+    if (dim == 1 || body.peridynamics.across_voids == BondsAcrossVoids::keep)
+      return {};
+    if (!nodes.lattice())
+      return std::make_unique<BoundaryFaces<dim>>(nodes, weights.reach());
+    if (body.domain.has_voids())
+      return std::make_unique<MissingCells<dim>>(nodes, body.domain, weights);
+    return {};
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                       \
+  template class BodyVoids<dim>;                                                        \
+  template std::unique_ptr<BodyVoids<dim>> make_body_voids(const Nodes<dim> &,          \
+                                                           const BodyParameters<dim> &, \
+                                                           const KernelWeights<dim> &);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
