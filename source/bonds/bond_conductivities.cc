@@ -16,7 +16,8 @@ namespace PeriDeal
   template <int dim>
   BondConductivities<dim>::BondConductivities(const Neighbors<dim> &neighbors,
                                               const Material       &material,
-                                              const Expression     &initial_value)
+                                              const Expression     &initial_value,
+                                              const SidePoint      &side_point)
     : neighbors(neighbors)
     , material(material)
     , all_alike(material.uniform_conductivity())
@@ -25,15 +26,31 @@ namespace PeriDeal
     const unsigned int n     = all_alike ? 1 : nodes.n_local();
     std::string        message;
     values.resize(n);
+    if (side_point && !all_alike)
+      for (unsigned int i = 0; i < n; ++i)
+        if (const std::optional<Point<dim>> p = side_point(i))
+          moved.emplace(i, *p);
     for (unsigned int i = 0; i < n && message.empty(); ++i)
       {
         const Point<dim> p = nodes.n_local() > 0 ? nodes.position(i) : Point<dim>();
-        values[i]          = material.conductivity.value(p, initial_value.value(p));
+        values[i]          = at(i, initial_value.value(p));
         if (!(values[i] > 0.))
           message = "'Conductivity' in section 'Material' is " + std::to_string(values[i]) +
                     " at a node; it must be positive everywhere in the body.";
       }
     throw_on_all_if_any(nodes.communicator(), message);
+  }
+
+
+  template <int dim>
+  double BondConductivities<dim>::at(const unsigned int node, const double T) const
+  {
+    const Nodes<dim> &nodes = neighbors.nodes();
+    const auto        found = moved.find(node);
+    return material.conductivity.value(found != moved.end() ? found->second :
+                                       nodes.n_local() > 0  ? nodes.position(node) :
+                                                              Point<dim>(),
+                                       T);
   }
 
 
@@ -47,7 +64,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
         const double T = u.local_element(i);
-        values[i]      = material.conductivity.value(nodes.position(i), T);
+        values[i]      = at(i, T);
         if (!(values[i] > 0.))
           keep_lower(worst, not_positive("'Conductivity'", values[i], T, nodes.position(i)));
       }
@@ -71,6 +88,27 @@ namespace PeriDeal
     const double a = of_node(node), b = of_node(neighbor);
     if (material.interface_rule != InterfaceRule::harmonic)
       return interface_conductivity(material.interface_rule, a, b);
+    return harmonic(node, neighbor);
+  }
+
+
+  template <int dim>
+  double BondConductivities<dim>::in_series(const unsigned int node,
+                                            const unsigned int neighbor,
+                                            const double       s) const
+  {
+    if (all_alike)
+      return values[0];
+    if (depend_on_temperature())
+      return 1. / (s / of_node(node) + (1. - s) / of_node(neighbor));
+    return harmonic(node, neighbor);
+  }
+
+
+  template <int dim>
+  double BondConductivities<dim>::harmonic(const unsigned int node,
+                                           const unsigned int neighbor) const
+  {
     // From the end that comes first in space, so that both ends of a bond see the same value to the
     // last bit.
     Point<dim> start = neighbors.position(node), end = neighbors.position(neighbor);

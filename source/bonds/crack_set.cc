@@ -155,10 +155,40 @@ namespace PeriDeal
 
 
   template <int dim>
+  double CrackSet<dim>::contact_fraction_of(
+    const CrackGeometry<dim>                                 &crack,
+    const Point<dim>                                         &a,
+    const Point<dim>                                         &b,
+    const std::function<std::pair<double, double>(double s)> &conductivities) const
+  {
+    const double across             = std::abs((b - a) * crack.normal());
+    const auto [in_series, of_bond] = conductivities(std::abs(crack.signed_distance(a)) / across);
+    return contact_fraction(contact_conductance, across, in_series) * (in_series / of_bond);
+  }
+
+
+  template <int dim>
+  std::optional<Point<dim>> CrackSet<dim>::side_point(const unsigned int node) const
+  {
+    const Nodes<dim> &nodes = neighbors.nodes();
+    const Point<dim> &p     = nodes.crack_point(node);
+    const double      step  = 1e-6 * nodes.smallest_spacing();
+    for (const CrackGeometry<dim> &crack : cracks)
+      if (crack.is_near(p, step) && std::abs(crack.signed_distance(p)) < 1e-3 * step &&
+          crack.covers(p))
+        return p + step * crack.normal();
+    if (p != nodes.position(node)) // doubled by a crack that is cut into the mesh
+      return p;
+    return {};
+  }
+
+
+  template <int dim>
   double CrackSet<dim>::kept_fraction(const unsigned int             node,
                                       const unsigned int             neighbor,
                                       const BondConductivities<dim> &conductivities,
-                                      bool                          &cut) const
+                                      bool                          &cut,
+                                      const bool                     of_way) const
   {
     double kept = 1.;
     cut         = false;
@@ -172,19 +202,21 @@ namespace PeriDeal
           {
             if (!cracks[k].is_near(neighbors.position(node), neighbors.weights().reach()))
               continue;
-            test_crossings(node,
-                           neighbor,
-                           cracks[k],
-                           [&](const Point<dim> &a, const Point<dim> &b) {
-                             cut = true;
-                             fraction =
-                               std::min(fraction,
-                                        contact_conductance < 0. ?
-                                          transmission :
-                                          contact_fraction(contact_conductance,
-                                                           std::abs((b - a) * cracks[k].normal()),
-                                                           conductivities.of_bond(node, neighbor)));
-                           });
+            test_crossings(
+              node,
+              neighbor,
+              cracks[k],
+              [&](const Point<dim> &a, const Point<dim> &b) {
+                cut      = true;
+                fraction = std::min(
+                  fraction,
+                  contact_conductance < 0. ?
+                    transmission :
+                    contact_fraction_of(cracks[k], a, b, [&](const double s) {
+                      const double k = conductivities.in_series(node, neighbor, s);
+                      return std::make_pair(k, of_way ? k : conductivities.of_bond(node, neighbor));
+                    }));
+              });
           }
         kept *= fraction;
       }

@@ -11,7 +11,10 @@ namespace PeriDeal
   DiffusionBonds<dim>::DiffusionBonds(Families<dim> &families, const BodyParameters<dim> &body)
     : own_families(families)
     , topology(families.neighbors())
-    , material(topology, body.material, body.initial_and_source.initial_value)
+    , material(topology,
+               body.material,
+               body.initial_and_source.initial_value,
+               [&families](const unsigned int node) { return families.cracks().side_point(node); })
     , node_factors(topology)
     , corrects_all(body.peridynamics.surface_correction == SurfaceCorrection::energy)
   {}
@@ -111,9 +114,10 @@ namespace PeriDeal
   template <int dim>
   double DiffusionBonds<dim>::kept_fraction(const unsigned int node,
                                             const unsigned int neighbor,
-                                            bool              &cut) const
+                                            bool              &cut,
+                                            const bool         of_way) const
   {
-    return cracks().kept_fraction(node, neighbor, material, cut);
+    return cracks().kept_fraction(node, neighbor, material, cut, of_way);
   }
 
 

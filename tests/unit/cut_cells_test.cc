@@ -62,6 +62,11 @@ namespace PeriDeal
       return 1.;
     }
 
+    double no_pair(const unsigned int, const unsigned int)
+    {
+      return not_asked();
+    }
+
     unsigned int n_cut(const CutCells<2> &cells)
     {
       return std::count(cells.flags().begin(), cells.flags().end(), true);
@@ -117,7 +122,7 @@ namespace PeriDeal
       {
         pairs.set(through, transmission);
         matrix = square_matrix();
-        pairs.cut_matrix(cell, not_asked, matrix);
+        pairs.cut_matrix(cell, no_pair, matrix);
         for (unsigned int a = 0; a < 4; ++a)
           for (unsigned int b = 0; b < 4; ++b)
             if (a != b)
@@ -133,17 +138,17 @@ namespace PeriDeal
     EXPECT_FALSE(pairs.pairs_are_stiffer());
     matrix       = square_matrix();
     matrix(1, 0) = matrix(0, 1) = 0.1;
-    pairs.cut_matrix(cell, not_asked, matrix);
+    pairs.cut_matrix(cell, no_pair, matrix);
     EXPECT_EQ(matrix(1, 0), 0.1); // nothing is held back: the cell as it was
     EXPECT_FALSE(pairs.pairs_are_stiffer());
     pairs.set(through, 0.);
-    pairs.cut_matrix(cell, not_asked, matrix);
+    pairs.cut_matrix(cell, no_pair, matrix);
     EXPECT_EQ(matrix(1, 0), 0.);
     EXPECT_TRUE(pairs.pairs_are_stiffer());
     CutCells<2> removed(body.dofs, {false, true, -1., not_asked});
     removed.set(through, 0.);
     matrix = square_matrix();
-    removed.cut_matrix(cell, not_asked, matrix);
+    removed.cut_matrix(cell, no_pair, matrix);
     EXPECT_EQ(matrix.linfty_norm(), 0.);
   }
 
@@ -152,14 +157,14 @@ namespace PeriDeal
   {
     const Square body;
     const auto   cell  = body.cell_at({0.6, 0.3});
-    const auto   kappa = [] { return 2.; };
+    const auto   kappa = [](const unsigned int, const unsigned int) { return 2.; };
     CutCells<2>  contact(body.dofs, {false, false, 3., not_asked});
     contact.set(through, 0.);
     // In series over the way of 0.25 across the crack, also along the diagonal.
     const double fraction = 3. * 0.25 / (3. * 0.25 + 2.);
     EXPECT_NEAR(contact.kept_fraction(cell, 0, 2, kappa), fraction, 1e-15);
     EXPECT_NEAR(contact.kept_fraction(cell, 0, 3, kappa), fraction, 1e-15);
-    EXPECT_EQ(contact.kept_fraction(cell, 0, 1, not_asked), 1.);
+    EXPECT_EQ(contact.kept_fraction(cell, 0, 1, no_pair), 1.);
 
     // Two pieces of one crack are one crossing, two cracks are two.
     const Pieces bent{piece(0, {-1., 0.3}, {2., 0.3}), piece(0, {-1., 0.4}, {2., 0.4})},

@@ -7,6 +7,9 @@
 #include <perideal/bonds/neighbors.h>
 #include <perideal/scene/material.h>
 
+#include <functional>
+#include <optional>
+#include <unordered_map>
 #include <vector>
 
 namespace PeriDeal
@@ -16,13 +19,17 @@ namespace PeriDeal
   class BondConductivities
   {
   public:
+    /** Where a node has its material, if that is not at its own place. */
+    using SidePoint = std::function<std::optional<dealii::Point<dim>>(const unsigned int node)>;
+
     /**
      * At the initial temperatures. Collective. Throws UserError where one is not positive.
      * Neighbours and material have to outlive this object.
      */
     BondConductivities(const Neighbors<dim> &neighbors,
                        const Material       &material,
-                       const Expression     &initial_value);
+                       const Expression     &initial_value,
+                       const SidePoint      &side_point = {});
 
     /** One conductivity everywhere. */
     bool uniform() const;
@@ -30,6 +37,12 @@ namespace PeriDeal
 
     double of_node(const unsigned int node) const;
     double of_bond(const unsigned int node, const unsigned int neighbor) const;
+
+    /**
+     * Of the materials along a bond in series, 1/(s/k_i + (1-s)/k_j), with that of the node up to
+     * a part s of the way. Along the way where the conductivity does not depend on the temperature.
+     */
+    double in_series(const unsigned int node, const unsigned int neighbor, const double s) const;
 
     /**
      * Those at the temperatures u, whose ghosts are up to date. Collective. Throws UserError where
@@ -44,5 +57,10 @@ namespace PeriDeal
     const Material       &material;
     const bool            all_alike;
     std::vector<double>   values; // of nodes, or the one
+
+    std::unordered_map<unsigned int, dealii::Point<dim>> moved; // where nodes have their material
+
+    double harmonic(const unsigned int node, const unsigned int neighbor) const;
+    double at(const unsigned int node, const double T) const;
   };
 } // namespace PeriDeal

@@ -10,6 +10,8 @@
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/crack_history.h>
 
+#include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -60,13 +62,26 @@ namespace PeriDeal
     bool empty() const;
 
     /**
-     * What the cracks leave of a bond's conductance, and whether it crosses any.
+     * A point slightly to the left of a crack that a node lies on: it belongs to that side, and has
+     * its material. None elsewhere.
+     */
+    std::optional<dealii::Point<dim>> side_point(const unsigned int node) const;
+
+    /**
+     * What the cracks leave of a bond's conductance, and whether it crosses any. A contact
+     * conductance H is in series with the materials on both of its sides,
+     *
+     *   |xi.n|/kappa = d_i/k_i + 1/H + d_j/k_j,
+     *
+     * with d the distances of the ends from the crack: the flow through a plane contact is exact.
      * @param conductivities  without effect unless a contact conductance is given
+     * @param of_way          the bond conducts as what lies along its way, else by of_bond()
      */
     double kept_fraction(const unsigned int             node,
                          const unsigned int             neighbor,
                          const BondConductivities<dim> &conductivities,
-                         bool                          &cut) const;
+                         bool                          &cut,
+                         const bool                     of_way = false) const;
 
     /**
      * The cracks that a bond crosses: +1 if the node lies on the left side, -1 if its neighbour
@@ -106,6 +121,11 @@ namespace PeriDeal
                           const unsigned int        neighbor,
                           const CrackGeometry<dim> &crack,
                           const Test               &test) const;
+    double contact_fraction_of(
+      const CrackGeometry<dim>                                 &crack,
+      const dealii::Point<dim>                                 &a,
+      const dealii::Point<dim>                                 &b,
+      const std::function<std::pair<double, double>(double s)> &conductivities) const;
     void   make_soft_cracks();
     double spacing_along(const CrackPiece<dim> &piece) const; // of the nodes, along a crack
     bool   is_near_soft(const std::size_t k, const unsigned int node, const double distance) const;

@@ -87,8 +87,14 @@ namespace PeriDeal
     /** Some bond of this node may cross a crack, or be scaled for one. */
     bool near_crack(const unsigned int node) const;
 
-    /** What the cracks leave of a bond's conductance, and whether it crosses any. */
-    double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const;
+    /**
+     * What the cracks leave of a bond's conductance, and whether it crosses any.
+     * @param of_way as CrackSet::kept_fraction() has it
+     */
+    double kept_fraction(const unsigned int node,
+                         const unsigned int neighbor,
+                         bool              &cut,
+                         const bool         of_way = false) const;
 
     /** Whether W is symmetric. */
     bool symmetric() const;

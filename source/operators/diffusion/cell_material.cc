@@ -109,6 +109,37 @@ namespace PeriDeal
 
 
   template <int dim>
+  void CellMaterial<dim>::assemble_unit(const Cell &cell, FullMatrix<double> &stiffness) const
+  {
+    values.reinit(cell);
+    stiffness = 0.;
+    for (const unsigned int q : values.quadrature_point_indices())
+      for (unsigned int i = 0; i < stiffness.m(); ++i)
+        for (unsigned int j = 0; j < stiffness.m(); ++j)
+          stiffness(i, j) += values.JxW(q) * (values.shape_grad(i, q) * values.shape_grad(j, q));
+  }
+
+
+  template <int dim>
+  bool CellMaterial<dim>::varies() const
+  {
+    return !material.conductivity.is_constant();
+  }
+
+
+  template <int dim>
+  double CellMaterial<dim>::conductivity(const Cell        &cell,
+                                         const Point<dim>  &p,
+                                         const unsigned int vertex) const
+  {
+    const double T = !material.conductivity.depends_on_temperature() ? 0. :
+                     taken.size() > 0 ? taken(cell->vertex_dof_index(vertex, 0)) :
+                                        initial_value.value(cell->vertex(vertex));
+    return material.conductivity.value(p, T);
+  }
+
+
+  template <int dim>
   double CellMaterial<dim>::center_conductivity(const Cell &cell) const
   {
     double T = 0.;

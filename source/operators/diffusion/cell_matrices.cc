@@ -30,9 +30,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool CellMatrices<dim>::assemble_whole(const Cell &cell, const bool with_bonds) const
+  bool CellMatrices<dim>::assemble_whole(const Cell &cell,
+                                         const bool  with_bonds,
+                                         const bool  in_pairs) const
   {
     material.assemble(cell, matrices.stiffness, matrices.mass);
+    if (in_pairs)
+      {
+        material.assemble_unit(cell, matrices.stiffness);
+        cut_by_cracks.conduct_in_pairs(
+          cell,
+          [&](const Point<dim> &p, const unsigned int vertex) {
+            return material.conductivity(cell, p, vertex);
+          },
+          matrices.stiffness);
+      }
     cell->get_dof_indices(matrices.indices);
     return bonds != nullptr && with_bonds &&
            bonds->coupling().change_cell(cell, matrices.stiffness);
@@ -40,16 +52,33 @@ namespace PeriDeal
 
 
   template <int dim>
+  typename CutCells<dim>::PairConductivity CellMatrices<dim>::pair_conductivity(
+    const Cell &cell) const
+  {
+    if (!material.varies())
+      return [this, &cell](const unsigned int, const unsigned int) {
+        return material.center_conductivity(cell);
+      };
+    return [this, &cell](const unsigned int a, const unsigned int b) {
+      return cut_by_cracks
+        .conductivity_between(cell, a, b, [&](const Point<dim> &p, const unsigned int vertex) {
+          return material.conductivity(cell, p, vertex);
+        });
+    };
+  }
+
+
+  template <int dim>
   void CellMatrices<dim>::assemble_cut(const Cell &cell, const bool with_bonds) const
   {
-    assemble_whole(cell, with_bonds);
+    const bool is_cut = cut_by_cracks.is_cut(cell);
+    assemble_whole(cell, with_bonds, is_cut && !cut_by_cracks.removes() && material.varies());
     separated.clear();
-    if (cut_by_cracks.is_cut(cell))
-      cut_by_cracks.cut_matrix(
-        cell,
-        [&] { return material.center_conductivity(cell); },
-        matrices.stiffness,
-        factors.empty() ? nullptr : &separated);
+    if (is_cut)
+      cut_by_cracks.cut_matrix(cell,
+                               pair_conductivity(cell),
+                               matrices.stiffness,
+                               factors.empty() ? nullptr : &separated);
     if (bonds != nullptr && with_bonds)
       bonds->coupling().finish_cell(cell, matrices.stiffness);
   }
@@ -156,12 +185,7 @@ namespace PeriDeal
             for (unsigned int b = 0; b < a; ++b)
               {
                 crossed.clear();
-                cut_by_cracks.kept_fraction(
-                  cell,
-                  a,
-                  b,
-                  [&] { return material.center_conductivity(cell); },
-                  &crossed);
+                cut_by_cracks.kept_fraction(cell, a, b, pair_conductivity(cell), &crossed);
                 for (const auto &[crack, side] : crossed)
                   balance.cracks[crack] +=
                     side * -matrices.stiffness(a, b) * (u(indices[b]) - u(indices[a]));

@@ -116,7 +116,7 @@ namespace PeriDeal
   double CutCells<dim>::kept_fraction(const Cell                                &cell,
                                       const unsigned int                         a,
                                       const unsigned int                         b,
-                                      const std::function<double()>             &conductivity,
+                                      const PairConductivity                    &conductivity,
                                       std::vector<std::pair<unsigned int, int>> *crossed) const
   {
     const Tensor<1, dim> xi      = cell->vertex(b) - cell->vertex(a);
@@ -140,7 +140,7 @@ namespace PeriDeal
                 fraction = std::min(fraction, transmission);
                 continue;
               }
-            const double kappa = conductivity();
+            const double kappa = conductivity(a, b);
             const double H     = contact ? rule.contact :
                                            contact_conductance_of_transmission(
                                          transmission,
@@ -157,10 +157,67 @@ namespace PeriDeal
 
 
   template <int dim>
-  void CutCells<dim>::cut_matrix(const Cell                    &cell,
-                                 const std::function<double()> &conductivity,
-                                 FullMatrix<double>            &stiffness,
-                                 std::vector<SeparatedPair>    *separated) const
+  double CutCells<dim>::conductivity_between(const Cell         &cell,
+                                             const unsigned int  a,
+                                             const unsigned int  b,
+                                             const Conductivity &conductivity) const
+  {
+    const Point<dim>   &start = cell->vertex(a), &end = cell->vertex(b);
+    std::vector<double> crossings{0., 1.};
+    const double        step = 1e-6 * cell->minimum_vertex_distance();
+    Tensor<1, dim>      aside; // what lies on a crack belongs to its left
+    for (const CrackGeometry<dim> &crack : cracks)
+      {
+        const double at_a = crack.signed_distance(start), at_b = crack.signed_distance(end);
+        if (crack.separates(start, end))
+          crossings.push_back(std::abs(at_a) / (std::abs(at_a) + std::abs(at_b)));
+        else if (std::abs(at_a) < 1e-3 * step && std::abs(at_b) < 1e-3 * step)
+          aside = step * crack.normal();
+      }
+    std::sort(crossings.begin(), crossings.end());
+    double resistance = 0.;
+    for (std::size_t k = 1; k < crossings.size(); ++k)
+      {
+        const double from = crossings[k - 1], part = crossings[k] - from;
+        if (part < 1e-9)
+          continue;
+        for (const double s : {from + 0.25 * part, from + 0.75 * part})
+          {
+            const unsigned int vertex = k == 1 && crossings.size() > 2 ? a :
+                                        crossings.size() > 2           ? b :
+                                        s < 0.5                        ? a :
+                                                                         b;
+            resistance +=
+              0.5 * part / conductivity(Point<dim>(start + s * (end - start) + aside), vertex);
+          }
+      }
+    return 1. / resistance;
+  }
+
+
+  template <int dim>
+  void CutCells<dim>::conduct_in_pairs(const Cell         &cell,
+                                       const Conductivity &conductivity,
+                                       FullMatrix<double> &stiffness) const
+  {
+    for (const unsigned int a : cell->vertex_indices())
+      stiffness(a, a) = 0.;
+    for (const unsigned int a : cell->vertex_indices())
+      for (unsigned int b = 0; b < a; ++b)
+        {
+          const double w  = -stiffness(a, b) * conductivity_between(cell, a, b, conductivity);
+          stiffness(a, b) = stiffness(b, a) = -w;
+          stiffness(a, a) += w;
+          stiffness(b, b) += w;
+        }
+  }
+
+
+  template <int dim>
+  void CutCells<dim>::cut_matrix(const Cell                 &cell,
+                                 const PairConductivity     &conductivity,
+                                 FullMatrix<double>         &stiffness,
+                                 std::vector<SeparatedPair> *separated) const
   {
     const FullMatrix<double> original = stiffness;
     stiffness                         = 0.;

@@ -84,7 +84,7 @@ namespace PeriDeal
     /** What the cracks leave of a bond, and whether it crosses any. */
     double kept_fraction(const unsigned int node, const unsigned int neighbor, bool &cut) const
     {
-      return bonds.kept_fraction(node, neighbor, cut);
+      return bonds.kept_fraction(node, neighbor, cut, true);
     }
 
     /** Bonds everywhere, between equal cells, are better kept as a form than in a matrix. */

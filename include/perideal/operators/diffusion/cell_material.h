@@ -49,6 +49,17 @@ namespace PeriDeal
                   dealii::FullMatrix<double> &stiffness,
                   dealii::FullMatrix<double> &mass) const;
 
+    /** Set the stiffness of a whole cell of conductivity 1. Not collective. */
+    void assemble_unit(const Cell &cell, dealii::FullMatrix<double> &stiffness) const;
+
+    /** Whether kappa is another one at other places or temperatures. Not collective. */
+    bool varies() const;
+
+    /** kappa at a point of a cell, at the temperature of one of its vertices. Not collective. */
+    double conductivity(const Cell               &cell,
+                        const dealii::Point<dim> &p,
+                        const unsigned int        vertex) const;
+
     /** kappa at the centre of a cell of this process or a ghost. Not collective. */
     double center_conductivity(const Cell &cell) const;
 

@@ -90,7 +90,11 @@ namespace PeriDeal
     double lowest_remainder() const;
 
   private:
-    bool assemble_whole(const Cell &cell, const bool with_bonds) const;
+    /** @param in_pairs each pair of vertices conducts by itself, as in cut cells */
+    bool assemble_whole(const Cell &cell, const bool with_bonds, const bool in_pairs = false) const;
+
+    /** What lies between two vertices of a cell, which has to outlive it. */
+    typename CutCells<dim>::PairConductivity pair_conductivity(const Cell &cell) const;
     void assemble_cut(const Cell &cell, const bool with_bonds) const;
 
     const dealii::DoFHandler<dim>  &dofs;

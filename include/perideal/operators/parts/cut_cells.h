@@ -22,7 +22,8 @@ namespace PeriDeal
    * In a cut cell that is not removed (Q1, one unknown at each vertex) pairs of vertices conduct
    * w_ab = k_ab max(0, -K_ab), where k_ab is the product over the cracks between the two of what
    * each crack lets through: its transmission, or what a contact conductance does in series with
-   * the cell. Where several pieces of one crack lie between them, the one counts that lets least
+   * the cell. Where materials vary, K is that of pairs, each of which conducts as what lies along
+   * it: on both sides of a crack the material is that of the side. Where several pieces of one crack lie between them, the one counts that lets least
    * through.
    *
    * No function is collective.
@@ -76,17 +77,40 @@ namespace PeriDeal
     /** Cracks let something through. */
     bool conducts() const;
 
+    using PairConductivity = std::function<double(const unsigned int a, const unsigned int b)>;
+
+    /** Of the material at a point of a cell, which is on the same side of cracks as a vertex. */
+    using Conductivity =
+      std::function<double(const dealii::Point<dim> &p, const unsigned int vertex)>;
+
+    /**
+     * Of what lies between two vertices in series, without what cracks do: the length over the
+     * integral of 1/k.
+     */
+    double conductivity_between(const Cell         &cell,
+                                const unsigned int  a,
+                                const unsigned int  b,
+                                const Conductivity &conductivity) const;
+
+    /**
+     * Turn the matrix of a cell of conductivity 1 into that of its pairs, each with its
+     * conductivity_between().
+     */
+    void conduct_in_pairs(const Cell                 &cell,
+                          const Conductivity         &conductivity,
+                          dealii::FullMatrix<double> &stiffness) const;
+
     /**
      * k_ab.
      *
-     * @param conductivity of the cell, asked only where it counts
+     * @param conductivity between two vertices, asked only where it counts
      * @param crossed      if given, the cracks between the two vertices are appended, with 1 where
      *                     vertex a lies on their left and else -1
      */
     double kept_fraction(const Cell                                &cell,
                          const unsigned int                         a,
                          const unsigned int                         b,
-                         const std::function<double()>             &conductivity,
+                         const PairConductivity                    &conductivity,
                          std::vector<std::pair<unsigned int, int>> *crossed = nullptr) const;
 
     /** A pair of a cell's vertices that some crack separates. */
@@ -100,10 +124,10 @@ namespace PeriDeal
      * Turn the matrix of a whole cell into that of a cut one: of its pairs, or nothing.
      * @param separated if given, the separated pairs are appended
      */
-    void cut_matrix(const Cell                    &cell,
-                    const std::function<double()> &conductivity,
-                    dealii::FullMatrix<double>    &stiffness,
-                    std::vector<SeparatedPair>    *separated = nullptr) const;
+    void cut_matrix(const Cell                 &cell,
+                    const PairConductivity     &conductivity,
+                    dealii::FullMatrix<double> &stiffness,
+                    std::vector<SeparatedPair> *separated = nullptr) const;
 
     /**
      * The pairs of some cell conduct more than it did as a whole, since K_ab > 0 somewhere (cells
