@@ -10,6 +10,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/mesh/nodes.h>
+#include <perideal/mesh/part_faces.h>
 #include <perideal/scene/body_parameters.h>
 #include <perideal/scene/crack_geometry.h>
 
@@ -126,7 +127,7 @@ namespace PeriDeal
     find_hanging();
     find_positions();
     find_volumes(nodal_volume);
-    find_boundary_shares();
+    find_boundary_shares(domain.has_lattice() && !domain.image ? domain.holes : Holes<dim>());
     if (cracks.on_faces())
       find_crack_points(cracks);
     doubled = Utilities::MPI::max(crack_points.empty() ? 0 : 1, communicator()) > 0;
@@ -218,7 +219,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Nodes<dim>::find_boundary_shares()
+  void Nodes<dim>::find_boundary_shares(const Holes<dim> &holes)
   {
     for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int v) {
       for (const unsigned int f : cell->face_indices())
@@ -230,7 +231,7 @@ namespace PeriDeal
               touches = touches || face->vertex_index(w) == cell->vertex_index(v);
             double measure = 1.;
             if constexpr (dim > 1)
-              measure = face->measure();
+              measure = face->measure() * rim_over_face(holes, face);
             if (touches)
               shares.push_back({node,
                                 face->boundary_id(),

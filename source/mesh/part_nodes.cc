@@ -164,6 +164,7 @@ namespace PeriDeal
               if (!cell->face(f)->at_boundary() || part.kind != Part::of_side ||
                   part.side != cell->face(f)->boundary_id())
                 continue;
+              const double          rim = rim_over_face(conditions.holes, cell->face(f));
               const FacePoints<dim> points =
                 points_in_part<dim>(vertices_of<dim>(cell), f, part, 2);
               for (unsigned int v = 0; v < indices.size(); ++v)
@@ -178,7 +179,7 @@ namespace PeriDeal
                   for (std::size_t q = 0; q < points.area.size(); ++q)
                     {
                       const double area =
-                        points.area[q] *
+                        rim * points.area[q] *
                         (vertices ? GeometryInfo<dim>::d_linear_shape_function(points.unit[q], v) :
                                     1.);
                       piece.area += area;

@@ -121,6 +121,45 @@ namespace PeriDeal
   }
 
 
+  double Hole::place_on_rim(const Point<2> &p) const
+  {
+    if (corners.empty())
+      return radius * std::atan2(p[1] - center[1], p[0] - center[0]);
+    double shortest = std::numeric_limits<double>::max(), place = 0., before = 0.;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      {
+        const Point<2>     a    = corners[i];
+        const Tensor<1, 2> edge = corners[(i + 1) % corners.size()] - a;
+        const double       s    = std::clamp((p - a) * edge / edge.norm_square(), 0., 1.);
+        if (const double found = p.distance(a + s * edge); found < shortest)
+          {
+            shortest = found;
+            place    = before + s * edge.norm();
+          }
+        before += edge.norm();
+      }
+    return place;
+  }
+
+
+  double Hole::rim_length() const
+  {
+    if (corners.empty())
+      return 2. * std::acos(-1.) * radius;
+    double length = 0.;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      length += corners[i].distance(corners[(i + 1) % corners.size()]);
+    return length;
+  }
+
+
+  double Hole::rim_between(const Point<2> &a, const Point<2> &b) const
+  {
+    const double way = std::abs(place_on_rim(a) - place_on_rim(b));
+    return std::min(way, rim_length() - way); // around the other way
+  }
+
+
   std::vector<Hole> parse_holes(const std::string &text, const std::string &where)
   {
     std::vector<Hole> holes;
@@ -166,6 +205,54 @@ namespace PeriDeal
         shortest           = std::min(shortest, r.norm() - reach);
       }
     return shortest;
+  }
+
+
+  template <int dim>
+  std::vector<Hole> Holes<dim>::all() const
+  {
+    std::vector<Hole> list = listed;
+    if (!has_one || dim == 1)
+      return list;
+    Hole hole;
+    hole.center = Point<2>(center[0], center[dim > 1]);
+    if (shape == HoleShape::circle)
+      hole.radius = radius;
+    else
+      for (unsigned int k = 0; k < 4; ++k)
+        {
+          const double turn = (angle + 45. + 90. * k) * std::acos(-1.) / 180.;
+          hole.corners.push_back(hole.center +
+                                 std::sqrt(2.) * radius * Point<2>(std::cos(turn), std::sin(turn)));
+        }
+    list.push_back(hole);
+    return list;
+  }
+
+
+  template <int dim>
+  double Holes<dim>::rim_over_face(const std::vector<Point<dim>> &face) const
+  {
+    if constexpr (dim > 1)
+      {
+        const std::vector<Hole> holes = all();
+        if (holes.empty())
+          return 1.;
+        // In the plane of the holes a face is a line.
+        const Point<2> a(face.front()[0], face.front()[1]), b(face.back()[0], face.back()[1]);
+        const Point<2> middle(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]));
+        const auto     nearest =
+          std::min_element(holes.begin(), holes.end(), [&](const Hole &one, const Hole &other) {
+            return std::abs(one.distance(middle)) < std::abs(other.distance(middle));
+          });
+        const double length = a.distance(b), tiny = 1e-9 * length;
+        if (!(length > 0.) ||
+            (std::abs(nearest->distance(a)) < tiny && std::abs(nearest->distance(b)) < tiny &&
+             std::abs(nearest->distance(middle)) < tiny))
+          return 1.;
+        return nearest->rim_between(a, b) / length;
+      }
+    return 1.;
   }
 
 

@@ -220,6 +220,7 @@ namespace PeriDeal
     if (!domain.mesh_file.empty())
       boundary_conditions.physical_names =
         read_physical_names(domain.mesh_file, domain.files.folder, dim, domain.files.communicator);
+    boundary_conditions.holes = domain.image || !domain.has_lattice() ? Holes<dim>() : domain.holes;
     boundary_conditions.parse(domain.has_lattice(),
                               domain.has_voids(),
                               general.physics,

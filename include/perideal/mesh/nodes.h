@@ -94,7 +94,7 @@ namespace PeriDeal
 
     /**
      * Shares of owned nodes in boundary faces (both faces of a crack cut into the mesh are not
-     * listed).
+     * listed). Of stairs in place of the rim of a hole what they have of the rim.
      */
     const std::vector<BoundaryShare> &boundary_shares() const;
 
@@ -169,7 +169,7 @@ namespace PeriDeal
     void find_positions();
     void find_volumes(const NodalVolume nodal_volume);
     void find_hanging();
-    void find_boundary_shares();
+    void find_boundary_shares(const Holes<dim> &holes);
     void find_crack_points(const Cracks<dim> &cracks);
 
     const dealii::DoFHandler<dim>                       *dofs;

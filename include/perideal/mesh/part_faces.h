@@ -6,7 +6,7 @@
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/point.h>
 
-#include <perideal/scene/parts.h>
+#include <perideal/scene/boundary_conditions.h>
 
 #include <array>
 #include <vector>
@@ -23,6 +23,18 @@ namespace PeriDeal
     std::vector<dealii::Point<dim>> unit, real;
     std::vector<double>             area;
   };
+
+  /** Holes::rim_over_face() of a face on a hole; 1 on other faces. */
+  template <int dim, typename Face>
+  double rim_over_face(const Holes<dim> &holes, const Face &face)
+  {
+    if (face->boundary_id() != hole_boundary_id)
+      return 1.;
+    std::vector<dealii::Point<dim>> corners;
+    for (unsigned int v = 0; v < face->n_vertices(); ++v)
+      corners.push_back(face->vertex(v));
+    return holes.rim_over_face(corners);
+  }
 
   template <int dim>
   using CellVertices = std::array<dealii::Point<dim>, dealii::GeometryInfo<dim>::vertices_per_cell>;

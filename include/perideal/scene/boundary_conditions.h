@@ -5,6 +5,7 @@
 
 #include <deal.II/base/types.h>
 
+include<perideal / scene / holes.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/parts.h>
 #include <perideal/scene/physics.h>
@@ -17,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace PeriDeal
+  namespace PeriDeal
 {
   /** Boundary id of the hole of a plate with a hole. */
   constexpr dealii::types::boundary_id hole_boundary_id = 6;
@@ -63,6 +64,8 @@ namespace PeriDeal
     std::vector<VectorCondition> displacement, traction;
     double displacement_layer = -1., traction_layer = -1.; // lengths; negative: not given
     std::vector<Part> parts;
+    /** Of a lattice: whose rims the stairs of its cells stand for. */
+    Holes<dim> holes;
     /** Names of a mesh file for its boundary ids. To be set before parse(). */
     std::map<std::string, dealii::types::boundary_id> physical_names;
 

@@ -28,6 +28,14 @@ namespace PeriDeal
     std::pair<dealii::Point<2>, dealii::Point<2>> box() const;
 
     double area() const;
+
+    /** Length of the rim between the two of its points that are nearest to two others. */
+    double rim_between(const dealii::Point<2> &a, const dealii::Point<2> &b) const;
+
+  private:
+    /** Along the rim, from its first point to the nearest one. */
+    double place_on_rim(const dealii::Point<2> &p) const;
+    double rim_length() const;
   };
 
   /** A square hole has the radius as half its edge and is turned by the hole angle. */
@@ -56,6 +64,18 @@ namespace PeriDeal
      * it); the largest number without holes.
      */
     double distance(const dealii::Point<dim> &p) const;
+
+    /**
+     * A hole of a lattice has stairs in place of its rim. What of the true rim a face stands for,
+     * over the area of the face: what acts on the rim acts by that. Faces around a hole have the
+     * area of its rim together; those on the rim have 1.
+     * @param corners of the face of a cell
+     */
+    double rim_over_face(const std::vector<dealii::Point<dim>> &corners) const;
+
+  private:
+    /** All of them. */
+    std::vector<Hole> all() const;
   };
 
   /**

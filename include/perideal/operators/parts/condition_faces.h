@@ -57,6 +57,12 @@ namespace PeriDeal
       return points.area[q];
     }
 
+    void scale(const double factor)
+    {
+      for (double &area : points.area)
+        area *= factor;
+    }
+
     double shape_value(const unsigned int i, const unsigned int q) const
     {
       return shapes(i, q);
@@ -68,7 +74,47 @@ namespace PeriDeal
   };
 
 
-  /** Which conditions act on the faces of a finite element mesh, and on what of them. */
+  /** The quadrature points of a whole face, whose area counts by a factor. */
+  template <int dim>
+  class FaceValues
+  {
+  public:
+    FaceValues(const dealii::FEFaceValues<dim> &values, const double factor)
+      : values(values)
+      , factor(factor)
+    {}
+
+    dealii::std_cxx20::ranges::iota_view<unsigned int, unsigned int> quadrature_point_indices()
+      const
+    {
+      return values.quadrature_point_indices();
+    }
+
+    const dealii::Point<dim> &quadrature_point(const unsigned int q) const
+    {
+      return values.quadrature_point(q);
+    }
+
+    double JxW(const unsigned int q) const
+    {
+      return factor * values.JxW(q);
+    }
+
+    double shape_value(const unsigned int i, const unsigned int q) const
+    {
+      return values.shape_value(i, q);
+    }
+
+  private:
+    const dealii::FEFaceValues<dim> &values;
+    const double                     factor;
+  };
+
+
+  /**
+   * Which conditions act on the faces of a finite element mesh, and on what of them. On stairs in
+   * place of the rim of a hole areas are those of the rim.
+   */
   template <int dim>
   class ConditionFaces
   {
@@ -90,6 +136,7 @@ namespace PeriDeal
                   PartValues<dim> values(
                     fe,
                     points_in_part<dim>(vertices_of<dim>(cell), f, part, fe.degree + 1));
+                  values.scale(rim_over_face(conditions.holes, cell->face(f)));
                   for (const unsigned int q : values.quadrature_point_indices())
                     areas[part.id - first_part_id] += values.JxW(q);
                   if (!values.empty())
@@ -116,7 +163,8 @@ namespace PeriDeal
         if (condition.id == id)
           {
             whole.reinit(cell, f);
-            visit(condition, whole);
+            visit(condition,
+                  FaceValues<dim>(whole, rim_over_face(conditions.holes, cell->face(f))));
           }
         else if (conditions.side_of(condition.id) == id && condition.id >= first_part_id)
           if (const auto found = on_faces.find({cell->active_cell_index(), f, condition.id});
