@@ -278,13 +278,11 @@ namespace PeriDeal
       context.progress.line(this->name() + ":");
     if (scene.time.steady)
       {
-        // With a material that depends on the solution; each iteration with its preconditioner
-        // takes some 6 applications.
-        const double n_solves = op().depends_on_solution() ? 10. : 1.;
+        const unsigned int n_solves = op().depends_on_solution() ? 10 : 1;
         if (says)
-          context.progress.line(n_solves > 1. ?
-                                  "  steady: some 10 linear solves, about 20 iterations each" :
-                                  "  steady: one linear solve, about 20 iterations");
+          context.progress.line("  steady: linear solves of about 20 iterations: " +
+                                std::to_string(n_solves));
+        // Each iteration with its preconditioner takes some 6 applications.
         return n_solves * 20. * 6. * time_of_application(op());
       }
     double n = expected_applications(times), time = n > 0. ? n * time_of_application(op()) : -1.;
@@ -292,32 +290,23 @@ namespace PeriDeal
     double         n_steps  = 0.;
     if (op().depends_on_solution())
       {
-        const unsigned long long before = op().n_applications();
-        const StepForecast       forecast(
+        const StepForecast forecast(
           scene.time.end_time,
-          [&](const AfterStep &after_step) {
-            advance_through_events(scene.time.end_time, after_step);
-          },
+          [&](const AfterStep &then) { advance_through_events(scene.time.end_time, then); },
+          op(),
           this->dofs().get_communicator());
         n_steps = forecast.n_steps();
         time    = forecast.seconds();
-        n       = static_cast<double>(op().n_applications() - before) * forecast.whole_over_tried();
+        n       = forecast.n_applications();
       }
     if (!says)
       return time;
-    std::ostringstream out;
-    out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
-        << spectrum.safe << "\n"
-        << "  stable steps (sharp / safe): euler " << stable_step("euler", spectrum.sharp) << " / "
-        << stable_step("euler", spectrum.safe) << ", rk4 " << stable_step("rk4", spectrum.sharp)
-        << " / " << stable_step("rk4", spectrum.safe) << "\n"
-        << "  stepper: " << stepper->name();
-    context.progress.line(out.str());
+    context.progress.line(describe_stable_steps(spectrum) + "\n  stepper: " + stepper->name());
+    const std::string steps = n_steps > 0. ? readable_count(std::llround(n_steps)) + " steps, " :
+                                             "";
     if (n > 0.)
-      context.progress.line(
-        "  estimated: " + (n_steps > 0. ? readable_count(std::llround(n_steps)) + " steps, " : "") +
-        readable_count(static_cast<unsigned long long>(n)) + " operator applications, " +
-        readable_duration(time));
+      context.progress.line("  estimated: " + steps + readable_count(std::llround(n)) +
+                            " operator applications, " + readable_duration(time));
     return time;
   }
 

@@ -6,9 +6,11 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/problems/problem_cost.h>
+#include <perideal/solvers/stepper.h>
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace PeriDeal
 {
@@ -23,6 +25,7 @@ namespace PeriDeal
   StepForecast::StepForecast(
     const double                                                            end,
     const std::function<void(const std::function<void(const double t)> &)> &advance,
+    const Operator                                                         &op,
     const MPI_Comm                                                          communicator)
     : end(end)
   {
@@ -32,6 +35,7 @@ namespace PeriDeal
     const auto            passed = [&] {
       return dealii::Utilities::MPI::max(processor_seconds() - start, communicator);
     };
+    const unsigned long long before = op.n_applications();
     try
       {
         advance([&](const double t) {
@@ -46,6 +50,7 @@ namespace PeriDeal
       }
     catch (const Enough &)
       {}
+    applications = static_cast<double>(op.n_applications() - before);
   }
 
 
@@ -67,4 +72,16 @@ namespace PeriDeal
     return n + t / (dt * (1. - p)) * (std::pow(end / t, 1. - p) - 1.);
   }
 
+
+
+  std::string describe_stable_steps(const Spectrum &spectrum)
+  {
+    std::ostringstream out;
+    out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
+        << spectrum.safe << "\n  stable steps (sharp / safe): ";
+    for (const std::string name : {"euler", "rk4"})
+      out << (name == "rk4" ? ", " : "") << name << " " << stable_step(name, spectrum.sharp)
+          << " / " << stable_step(name, spectrum.safe);
+    return out.str();
+  }
 } // namespace PeriDeal

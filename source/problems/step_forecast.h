@@ -3,9 +3,12 @@
 
 #pragma once
 
+#include <perideal/operators/interface/operator.h>
+
 #include <mpi.h>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -19,19 +22,21 @@ namespace PeriDeal
   public:
     /**
      * Let a run go from 0 towards its end for about a second of processor time. @param advance to
-     * the end, calling what it is given after each step but the last. Collective.
+     * the end, calling what it is given after each step but the last. @param op of the steps.
+     * Collective.
      */
     StepForecast(const double                                                            end,
                  const std::function<void(const std::function<void(const double t)> &)> &advance,
+                 const Operator                                                         &op,
                  const MPI_Comm communicator);
 
-    /** All of them. Those that were not tried grow as the later half of those that were, dt ~ t^p. */
+    /** All: those that were not tried grow as the later half of those that were, dt ~ t^p. */
     double n_steps() const;
 
-    /** Of the steps over those that were tried. */
-    double whole_over_tried() const
+    /** Of the operator. */
+    double n_applications() const
     {
-      return n_steps() / static_cast<double>(times.size());
+      return applications * whole_over_tried();
     }
 
     /** In processor time. */
@@ -41,9 +46,17 @@ namespace PeriDeal
     }
 
   private:
+    double whole_over_tried() const
+    {
+      return n_steps() / static_cast<double>(times.size());
+    }
+
     const double        end;
     std::vector<double> times; // after each step that was tried
-    double              spent       = 0.;
+    double              spent = 0., applications = 0.;
     bool                is_complete = false;
   };
+
+  /** Bounds of the spectrum, and what explicit steps are stable with them. */
+  std::string describe_stable_steps(const Spectrum &spectrum);
 } // namespace PeriDeal

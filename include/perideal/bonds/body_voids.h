@@ -39,9 +39,9 @@ namespace PeriDeal
 
   /**
    * For a body whose bonds are to be cut there; nullptr for one that has no such ways, and with
-   * `Bonds across voids = keep`. On lattices cells that do not exist are looked for, on other meshes
-   * faces on the boundary, but for cracks that are cut into the mesh. Nodes and weights have to
-   * outlive it, and the nodes have their halo. Collective.
+   * `Bonds across voids = keep`. On lattices cells that do not exist are looked for, on other
+   * meshes faces on the boundary, but for cracks that are cut into the mesh. Nodes, body and
+   * weights have to outlive it, and the nodes have their halo. Collective.
    */
   template <int dim>
   std::unique_ptr<BodyVoids<dim>> make_body_voids(const Nodes<dim>          &nodes,

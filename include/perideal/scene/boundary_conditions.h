@@ -5,7 +5,7 @@
 
 #include <deal.II/base/types.h>
 
-include<perideal / scene / holes.h>
+#include <perideal/scene/holes.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/parts.h>
 #include <perideal/scene/physics.h>

@@ -23,8 +23,8 @@ namespace PeriDeal
    * w_ab = k_ab max(0, -K_ab), where k_ab is the product over the cracks between the two of what
    * each crack lets through: its transmission, or what a contact conductance does in series with
    * the cell. Where materials vary, K is that of pairs, each of which conducts as what lies along
-   * it: on both sides of a crack the material is that of the side. Where several pieces of one crack lie between them, the one counts that lets least
-   * through.
+   * it: on both sides of a crack the material is that of the side. Where several pieces of one
+   * crack lie between them, the one counts that lets least through.
    *
    * No function is collective.
    */
