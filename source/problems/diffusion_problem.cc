@@ -9,7 +9,6 @@
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include "diffusion_guards.h"

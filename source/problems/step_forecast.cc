@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/progress.h>
 #include <perideal/problems/problem_cost.h>
 #include <perideal/solvers/stepper.h>
 
@@ -72,6 +73,12 @@ namespace PeriDeal
     return n + t / (dt * (1. - p)) * (std::pow(end / t, 1. - p) - 1.);
   }
 
+
+
+  std::string counted(const double n, const std::string &what)
+  {
+    return n > 0. ? readable_count(std::llround(n)) + what : "";
+  }
 
 
   std::string describe_stable_steps(const Spectrum &spectrum)

@@ -57,6 +57,9 @@ namespace PeriDeal
     bool                is_complete = false;
   };
 
+  /** A number of what; nothing of none. */
+  std::string counted(const double n, const std::string &what);
+
   /** Bounds of the spectrum, and what explicit steps are stable with them. */
   std::string describe_stable_steps(const Spectrum &spectrum);
 } // namespace PeriDeal
