@@ -279,14 +279,13 @@ namespace PeriDeal
       {
         const unsigned int n_solves = op().depends_on_solution() ? 10 : 1;
         if (says)
-          context.progress.line("  steady: linear solves of about 20 iterations: " +
-                                std::to_string(n_solves));
-        // Each iteration with its preconditioner takes some 6 applications.
+          context.progress.line("  steady, linear solves: " + std::to_string(n_solves));
+        // Of about 20 iterations; each with its preconditioner takes some 6 applications.
         return n_solves * 20. * 6. * time_of_application(op());
       }
-    double n = expected_applications(times), time = n > 0. ? n * time_of_application(op()) : -1.;
-    const Spectrum spectrum = op().spectrum();
-    double         n_steps  = 0.;
+    const std::string bounds = describe_stable_steps(op().spectrum());
+    double            n = expected_applications(times), n_steps = 0.,
+           time = n > 0. ? n * time_of_application(op()) : -1.;
     if (op().depends_on_solution())
       {
         const StepForecast forecast(
@@ -300,7 +299,7 @@ namespace PeriDeal
       }
     if (!says)
       return time;
-    context.progress.line(describe_stable_steps(spectrum) + "\n  stepper: " + stepper->name());
+    context.progress.line(bounds + "\n  stepper: " + stepper->name());
     const std::string steps = n_steps > 0. ? readable_count(std::llround(n_steps)) + " steps, " :
                                              "";
     if (n > 0.)
