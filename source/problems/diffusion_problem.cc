@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <tuple>
 
 #include "diffusion_guards.h"
 #include "diffusion_notes.h"
@@ -293,9 +294,7 @@ namespace PeriDeal
           [&](const AfterStep &then) { advance_through_events(scene.time.end_time, then); },
           op(),
           this->dofs().get_communicator());
-        n_steps = forecast.n_steps();
-        time    = forecast.seconds();
-        n       = forecast.n_applications();
+        std::tie(n_steps, n, time) = forecast.all();
       }
     if (!says)
       return time;

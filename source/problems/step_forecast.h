@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace PeriDeal
@@ -30,26 +31,18 @@ namespace PeriDeal
                  const Operator                                                         &op,
                  const MPI_Comm communicator);
 
-    /** All: those that were not tried grow as the later half of those that were, dt ~ t^p. */
-    double n_steps() const;
-
-    /** Of the operator. */
-    double n_applications() const
+    /** Steps, applications of the operator, and seconds of processor time. */
+    std::tuple<double, double, double> all() const
     {
-      return applications * whole_over_tried();
-    }
-
-    /** In processor time. */
-    double seconds() const
-    {
-      return spent * whole_over_tried();
+      const double n = n_steps(), part = n / static_cast<double>(times.size());
+      return {n, applications * part, spent * part};
     }
 
   private:
-    double whole_over_tried() const
-    {
-      return n_steps() / static_cast<double>(times.size());
-    }
+    /**
+     * Those that were not tried grow as the later half of those that were, dt ~ t^p.
+     */
+    double n_steps() const;
 
     const double        end;
     std::vector<double> times; // after each step that was tried
