@@ -31,7 +31,8 @@ namespace PeriDeal
    * diffusion and elasticity have in common.
    *
    * A bond has the strength w(xi) V_i V_j k, with k the smallest stiffness (conductivity) of the
-   * cells on its way. It is active if both nodes are in the zone, its way lies within the body's
+   * cells on its way, and at most that part of w(xi) V^2 k, V of a cell, of which cells lie around
+   * each piece of its way: along the rim of a void it takes no more than cells have. It is active if both nodes are in the zone, its way lies within the body's
    * cells of lattice size, and the stiffness on it varies by less than the factor largest_contrast.
    * On a graded mesh hanging nodes and others on the side of a larger cell have no bonds.
    */
@@ -167,9 +168,9 @@ namespace PeriDeal
     const SiteData *at(const Site &site) const;
     SiteData       &own(const Site &site);
     Site            site_of(const unsigned int node) const;
-    double          stiffness_on(const Offset &offset, const Site &start) const;
-    std::size_t     number_of(const SiteData &start, const Offset &offset) const;
-    std::size_t     number_between(const unsigned int a, const unsigned int b) const;
+    double      strength_of(const Offset &offset, const Site &start, const double volumes) const;
+    std::size_t number_of(const SiteData &start, const Offset &offset) const;
+    std::size_t number_between(const unsigned int a, const unsigned int b) const;
 
     double                last;                      // time of the run
     bool                  stays             = false; // all that may join the zone are in it
@@ -203,26 +204,33 @@ namespace PeriDeal
   }
 
 
+  /** @param volumes V_i V_j */
   template <int dim>
-  inline double LatticeBonds<dim>::stiffness_on(const Offset &offset, const Site &start) const
+  inline double LatticeBonds<dim>::strength_of(const Offset &offset,
+                                               const Site   &start,
+                                               const double  volumes) const
   {
     if (plain)
-      return uniform_stiffness;
-    double lowest = std::numeric_limits<double>::max(), highest = 0.;
+      return uniform_stiffness * offset.weight * volumes;
+    double lowest = std::numeric_limits<double>::max(), highest = 0., least = 1.;
     for (const BondPiece<dim> &piece : offset.pieces)
       {
-        bool inside = false;
+        unsigned int n_around = 0;
         for (const Site &cell : piece.cells)
           if (const SiteData *data = at(start + cell); data != nullptr && data->cell)
             {
-              inside  = true;
+              ++n_around;
               lowest  = std::min(lowest, data->lowest);
               highest = std::max(highest, data->highest);
             }
-        if (!inside)
+        if (n_around == 0)
           return 0.;
+        least = std::min(least, static_cast<double>(n_around) / piece.cells.size());
       }
-    return highest > largest_contrast * lowest ? 0. : lowest;
+    if (highest > largest_contrast * lowest)
+      return 0.;
+    const double volume = families.nodes().lattice()->cell_volume();
+    return lowest * offset.weight * std::min(volumes, least * volume * volume);
   }
 
 
@@ -243,8 +251,7 @@ namespace PeriDeal
           const SiteData *neighbor = at(forward ? other : start);
           if (neighbor == nullptr || !neighbor->in_zone)
             continue;
-          const double strength =
-            stiffness_on(offset, start) * offset.weight * own->volume * neighbor->volume;
+          const double strength = strength_of(offset, start, own->volume * neighbor->volume);
           if (strength != 0.)
             visit(neighbor->node,
                   offset,
@@ -268,14 +275,14 @@ namespace PeriDeal
         const SiteData *b = at(start + offset.site);
         if (b == nullptr || !b->in_zone)
           continue;
-        const double stiffness = stiffness_on(offset, start);
-        if (stiffness == 0.)
+        const double strength = strength_of(offset, start, a->volume * b->volume);
+        if (strength == 0.)
           continue;
         unsigned int n_around = 0;
         for (const Site &other : offset.pieces[passage.piece].cells)
           if (const SiteData *data = at(start + other); data != nullptr && data->cell)
             ++n_around;
-        visit(passage, stiffness * offset.weight * a->volume * b->volume / n_around);
+        visit(passage, strength / n_around);
       }
   }
 
