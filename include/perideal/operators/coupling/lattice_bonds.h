@@ -31,9 +31,10 @@ namespace PeriDeal
    * diffusion and elasticity have in common.
    *
    * A bond has the strength w(xi) V_i V_j k, with k the smallest stiffness (conductivity) of the
-   * cells on its way, and at most that part of w(xi) V^2 k, V of a cell, of which cells lie around
-   * each piece of its way: along the rim of a void it takes no more than cells have. It is active if both nodes are in the zone, its way lies within the body's
-   * cells of lattice size, and the stiffness on it varies by less than the factor largest_contrast.
+   * cells on its way, and along the rim of a void no more than cells have to give: w(xi) V^2 k, V
+   * of a cell, times the part of the cells around its way that exist. It is active if both nodes
+   * are in the zone, its way lies within the body's cells of lattice size, and the stiffness on it
+   * varies by less than the factor largest_contrast.
    * On a graded mesh hanging nodes and others on the side of a larger cell have no bonds.
    */
   template <int dim>
@@ -157,7 +158,6 @@ namespace PeriDeal
     Site                 reach{};
     // The bonds between vertices of a cell: start relative to the lowest corner, and offset.
     std::vector<std::pair<Site, unsigned int>> vertex_pairs;
-
     bool plain = true; // no void, one stiffness, one cell size
 
   private:
@@ -215,22 +215,20 @@ namespace PeriDeal
     double lowest = std::numeric_limits<double>::max(), highest = 0., least = 1.;
     for (const BondPiece<dim> &piece : offset.pieces)
       {
-        unsigned int n_around = 0;
+        double n_around = 0.;
         for (const Site &cell : piece.cells)
           if (const SiteData *data = at(start + cell); data != nullptr && data->cell)
             {
-              ++n_around;
+              n_around += 1.;
               lowest  = std::min(lowest, data->lowest);
               highest = std::max(highest, data->highest);
             }
-        if (n_around == 0)
-          return 0.;
-        least = std::min(least, static_cast<double>(n_around) / piece.cells.size());
+        least = std::min(least, n_around / piece.cells.size()); // 0 ends it
       }
-    if (highest > largest_contrast * lowest)
-      return 0.;
-    const double volume = families.nodes().lattice()->cell_volume();
-    return lowest * offset.weight * std::min(volumes, least * volume * volume);
+    const double whole = families.nodes().lattice()->cell_volume();
+    return highest > largest_contrast * lowest ?
+             0. :
+             lowest * offset.weight * std::min(volumes, least * whole * whole);
   }
 
 
