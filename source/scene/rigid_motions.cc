@@ -66,41 +66,119 @@ namespace PeriDeal
     }
 
 
+    /** From a node of a lattice to another one along each direction. */
+    template <int dim>
+    struct NodeRange
+    {
+      std::array<unsigned int, dim> first, last;
+    };
+
+
+    /** At most so many nodes of a range along each direction, its ends among them. */
+    constexpr unsigned int most_nodes = 40;
+
+    template <int dim>
+    unsigned int n_nodes_seen(const NodeRange<dim> &range, const unsigned int d)
+    {
+      return std::min(range.last[d] - range.first[d], most_nodes) + 1;
+    }
+
+    template <int dim>
+    unsigned int node_seen(const NodeRange<dim> &range, const unsigned int d, const unsigned int k)
+    {
+      const unsigned int n = n_nodes_seen(range, d);
+      return n == 1 ? range.first[d] :
+                      range.first[d] + k * (range.last[d] - range.first[d]) / (n - 1);
+    }
+
+
     /**
-     * Some of the places of a lattice, at most 40 along each direction, where a condition on a
-     * part, or one that is free elsewhere, holds a component. If it holds in none of them: corners
-     * of the body, since what is not seen is not to be refused.
+     * The nodes seen in a range at which a component is held are added to @p points. Returns
+     * whether there are any; the range becomes the one around them.
+     */
+    template <int dim, typename Holds>
+    bool look_for_nodes(const Domain<dim>       &domain,
+                        const types::boundary_id side,
+                        const Holds             &holds,
+                        NodeRange<dim>          &range,
+                        std::vector<Point<dim>> &points)
+    {
+      const double   shift = domain.has_nodes_at_centers() ? 0.5 : 0.;
+      NodeRange<dim> found{};
+      unsigned int   count = 1;
+      bool           any   = false;
+      for (unsigned int d = 0; d < dim; ++d)
+        count *= n_nodes_seen(range, d);
+      for (unsigned int k = 0; k < count; ++k)
+        {
+          Point<dim>                    p;
+          std::array<unsigned int, dim> seen{};
+          unsigned int                  rest = k;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              seen[d] = rest % n_nodes_seen(range, d);
+              rest /= n_nodes_seen(range, d);
+              const double s = side < 2 * dim && d == side / 2 ?
+                                 side % 2 :
+                                 (node_seen(range, d, seen[d]) + shift) / domain.cells[d];
+              p[d]           = domain.lower[d] + s * (domain.upper[d] - domain.lower[d]);
+            }
+          if (!holds(p))
+            continue;
+          points.push_back(p);
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const unsigned int before = node_seen(range, d, std::max(seen[d], 1u) - 1),
+                                 after =
+                                   node_seen(range,
+                                             d,
+                                             std::min(seen[d] + 1, n_nodes_seen(range, d) - 1));
+              found.first[d] = any ? std::min(found.first[d], before) : before;
+              found.last[d]  = any ? std::max(found.last[d], after) : after;
+            }
+          any = true;
+        }
+      if (any)
+        range = found;
+      return any;
+    }
+
+
+    /**
+     * Some of the nodes of a lattice where a condition on a part, or one that is free elsewhere,
+     * holds a component: of all of the body, then closer and closer around those that are held. If
+     * it holds none that is seen: corners of the body, since what is not seen is not to be refused.
      */
     template <int dim>
     std::vector<Point<dim>> held_points(const Scene<dim> &scene, const Held &held)
     {
-      constexpr unsigned int         most       = 40;
       const BoundaryConditions<dim> &conditions = scene.boundary_conditions;
       const Domain<dim>             &domain     = scene.domain;
       const Part *const              part       = conditions.part(held.side);
       const types::boundary_id       side       = conditions.side_of(held.side);
       if (part != nullptr && part->kind == Part::point)
         return {part->template position<dim>()};
-      std::vector<Point<dim>>       points;
-      std::array<unsigned int, dim> n;
-      unsigned int                  count = 1;
+      std::vector<Point<dim>> points;
+      NodeRange<dim>          range{};
       for (unsigned int d = 0; d < dim; ++d)
+        range.last[d] = side < 2 * dim && d == side / 2 ? 0 :
+                        domain.has_nodes_at_centers()   ? domain.cells[d] - 1 :
+                                                          domain.cells[d];
+      constexpr unsigned int most_looks = 12;
+      for (unsigned int look = 0; look < most_looks; ++look)
         {
-          n[d] = side < 2 * dim && d == side / 2 ? 1 : std::min(domain.cells[d], most) + 1;
-          count *= n[d];
-        }
-      for (unsigned int k = 0; k < count; ++k)
-        {
-          Point<dim>   p;
-          unsigned int rest = k;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              const double s = n[d] == 1 ? side % 2 : double(rest % n[d]) / (n[d] - 1);
-              p[d]           = domain.lower[d] + s * (domain.upper[d] - domain.lower[d]);
-              rest /= n[d];
-            }
-          if (conditions.holds_at(held.side, p) && held.condition->holds(held.component, p))
-            points.push_back(p);
+          const NodeRange<dim> before = range;
+          if (!look_for_nodes(
+                domain,
+                side,
+                [&](const Point<dim> &p) {
+                  return conditions.holds_at(held.side, p) &&
+                         held.condition->holds(held.component, p);
+                },
+                range,
+                points) ||
+              (range.first == before.first && range.last == before.last))
+            break;
         }
       if (points.empty())
         for (unsigned int k = 0; k < (1u << dim); ++k)

@@ -165,6 +165,7 @@ namespace PeriDeal
   void ElasticElements<dim>::throw_if_isolated() const
   {
     const double                   largest = stiffness_diagonal.linfty_norm();
+    const Vector                   held = this->held_unknowns(); // 1 on the diagonal, in any units
     std::string                    message;
     const NodeFamilies<dim> *const families = zone_bonds ? zone_bonds->coupling().node_families() :
                                                            nullptr;
@@ -173,7 +174,7 @@ namespace PeriDeal
         const std::string fault =
           families != nullptr && i % dim == 0 ? families->fault_of(i / dim) : "";
         const double own = stiffness_diagonal.local_element(i);
-        if (!fault.empty() || !(own > 1e-13 * largest))
+        if (!fault.empty() || (held.local_element(i) == 0. && !(own > 1e-13 * largest)))
           message =
             fault.empty() ?
               looseness_text(this->place_of(i),
