@@ -25,10 +25,11 @@ namespace PeriDeal
     /** a C + b K as deal.II's solvers want it. */
     struct System
     {
-      System(const Operator &op, const double a, const double b)
+      System(const Operator &op, const double a, const double b, const Vector *const more)
         : op(op)
         , a(a)
         , b(b)
+        , more(more)
       {
         if (a != 0.)
           op.initialize_vector(image);
@@ -46,10 +47,14 @@ namespace PeriDeal
             op.clear_constrained(image);
             y.add(a, image);
           }
+        if (more != nullptr)
+          for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
+            y.local_element(i) += more->local_element(i) * x.local_element(i);
       }
 
       const Operator &op;
       const double    a, b;
+      const Vector   *more;
       mutable Vector  image;
     };
   } // namespace
@@ -109,7 +114,8 @@ namespace PeriDeal
                                    const double  b,
                                    Vector       &x,
                                    const Vector &rhs,
-                                   const double  wanted)
+                                   const double  wanted,
+                                   const Vector *more)
   {
     // Also where nothing converges to: the 2-norm of what is not a number is 0.
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -127,7 +133,7 @@ namespace PeriDeal
       }
     prepare(a, b);
     SolverControl control(max_iterations, tolerance * size);
-    const System  system(op, a, b);
+    const System  system(op, a, b, more);
     try
       {
         if (op.symmetric())
@@ -143,7 +149,7 @@ namespace PeriDeal
             n_last_iterations  = std::numeric_limits<unsigned int>::max(); // worn
             n_first_iterations = 1;
             x                  = 0.; // what has diverged is no guess
-            return control.last_step() + solve(a, b, x, rhs, wanted);
+            return control.last_step() + solve(a, b, x, rhs, wanted, more);
           }
         std::ostringstream message;
         message

@@ -35,12 +35,14 @@ namespace PeriDeal
      * be zero. Collective.
      *
      * @param size stops at the tolerance times this l2 norm of the residual; 0: times that of rhs
+     * @param more added to the diagonal of the system; nullptr: nothing
      */
     unsigned int solve(const double  capacity_factor,
                        const double  stiffness_factor,
                        Vector       &x,
                        const Vector &rhs,
-                       const double  size = 0.);
+                       const double  size = 0.,
+                       const Vector *more = nullptr);
 
     /** K is no longer what the preconditioner was made for. Not collective. */
     void operator_changed();
