@@ -43,7 +43,7 @@ namespace PeriDeal
       , solver(op, options.solver_tolerance, options.max_iterations, options.direct_up_to)
       , held(op)
     {
-      for (Vector *v : {&next, &error, &residual, &change, &offset, &known, &taken})
+      for (Vector *v : {&next, &error, &base, &residual, &change, &offset, &known, &taken})
         op.initialize_vector(*v);
     }
 
@@ -247,23 +247,13 @@ namespace PeriDeal
         }
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
         {
-          k1.local_element(i) = (next.local_element(i) - u.local_element(i)) / (gamma * h);
-          offset_w(i, u, k1, (1. - gamma) * h);
+          k1.local_element(i)   = (next.local_element(i) - u.local_element(i)) / (gamma * h);
+          base.local_element(i) = u.local_element(i) + (1. - gamma) * h * k1.local_element(i);
         }
       const double second = solve_stage(u, base, gamma * h, t + h, next);
       step_heat           = h * ((1. - gamma) * first + gamma * second);
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
         k2.local_element(i) = (next.local_element(i) - base.local_element(i)) / (gamma * h);
-    }
-
-    void prepare_base()
-    {
-      op.initialize_vector(base);
-    }
-
-    void offset_w(const unsigned int i, const Vector &u, const Vector &k, const double factor)
-    {
-      base.local_element(i) = u.local_element(i) + factor * k.local_element(i);
     }
 
     Operator &op;

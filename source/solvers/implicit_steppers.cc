@@ -18,7 +18,6 @@ namespace PeriDeal
       SDIRK2(Operator &op, const StepperOptions &options)
         : ImplicitStepper(op, options, "sdirk2")
       {
-        prepare_base();
         op.initialize_vector(k1);
         op.initialize_vector(k2);
       }
@@ -47,7 +46,6 @@ namespace PeriDeal
       TwoStep(Operator &op, const StepperOptions &options, const std::string &method)
         : ImplicitStepper(op, options, method)
       {
-        prepare_base();
         for (Vector *v : {&previous, &oldest, &k1, &k2})
           op.initialize_vector(*v);
       }
