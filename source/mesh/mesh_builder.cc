@@ -164,7 +164,9 @@ namespace PeriDeal
             AssertThrow(fault.empty(),
                         UserError("'Mesh file' in section 'Domain': '" + file_name + "' " + fault +
                                   places_looked_at(file_name, scene_folder)));
-            check_msh(parse_msh(text, file_name, dim), file_name, dim);
+            MshMesh mesh = parse_msh(text, file_name, dim);
+            check_msh(mesh, file_name, dim);
+            text = text_of_msh(mesh, dim);
           }
         catch (const UserError &error)
           {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "msh_error.h"
 
@@ -75,7 +76,7 @@ namespace PeriDeal
     class Checker
     {
     public:
-      Checker(const MshMesh &mesh, const std::string &name, const unsigned int dim)
+      Checker(MshMesh &mesh, const std::string &name, const unsigned int dim)
         : mesh(mesh)
         , name(name)
         , dim(dim)
@@ -83,6 +84,7 @@ namespace PeriDeal
 
       void check()
       {
+        check_plane();
         for (unsigned int d = 0; d < dim; ++d)
           {
             const auto ends =
@@ -276,9 +278,10 @@ namespace PeriDeal
           }
       }
 
-      void check_sides() const
+      void check_sides()
       {
-        std::vector<Face> named;
+        std::vector<Face>      named;
+        std::set<unsigned int> inside;
         for (unsigned int s = 0; s < mesh.sides.size(); ++s)
           {
             const auto &n = mesh.sides[s].nodes;
@@ -305,10 +308,7 @@ namespace PeriDeal
                         title + " is found to be no " + face_name() + " of a " + cell_name() +
                           ", expected a piece of a side of the body.");
             if (dim > 1 && last - first == 2)
-              msh_error(name,
-                        side.line,
-                        title + " is found between two cells, expected a piece of a side of the "
-                                "body; leave what is inside out of the physical groups.");
+              inside.insert(named[k].element); // between two materials
             if (k > 0 && named[k - 1].nodes == named[k].nodes &&
                 mesh.sides[named[k - 1].element].id != side.id)
               msh_error(name,
@@ -317,9 +317,35 @@ namespace PeriDeal
                           std::to_string(mesh.sides[named[k - 1].element].id) + " and " +
                           std::to_string(side.id) + ", expected one.");
           }
+        std::vector<MshElement> outside;
+        for (unsigned int s = 0; s < mesh.sides.size(); ++s)
+          if (inside.count(s) == 0)
+            outside.push_back(mesh.sides[s]);
+        mesh.sides.swap(outside);
       }
 
-      const MshMesh     &mesh;
+      /** A mesh of two dimensions lies in the plane of x and y. */
+      void check_plane() const
+      {
+        std::array<double, 3> size{};
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const auto ends =
+              std::minmax_element(mesh.points.begin(),
+                                  mesh.points.end(),
+                                  [d](const Vector3 &a, const Vector3 &b) { return a[d] < b[d]; });
+            size[d] = (*ends.second)[d] - (*ends.first)[d];
+          }
+        for (unsigned int d = 0; d < dim; ++d)
+          if (dim == 2 && size[d] <= smallest_length * size[2])
+            msh_error(name,
+                      mesh.cells.front().line,
+                      "found a mesh in the plane of " + std::string(d == 0 ? "y" : "x") +
+                        " and z, expected one in the plane of x and y: in two dimensions z is not "
+                        "looked at. Turn the mesh.");
+      }
+
+      MshMesh           &mesh;
       const std::string &name;
       const unsigned int dim;
       double             extent = 0.;
@@ -329,7 +355,7 @@ namespace PeriDeal
   } // namespace
 
 
-  void check_msh(const MshMesh &mesh, const std::string &name, const unsigned int dim)
+  void check_msh(MshMesh &mesh, const std::string &name, const unsigned int dim)
   {
     Checker(mesh, name, dim).check();
   }

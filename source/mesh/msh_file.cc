@@ -5,15 +5,13 @@
 #include <perideal/mesh/msh_check.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <cstdlib>
+#include <iomanip>
 #include <map>
 #include <set>
-#include <string_view>
+#include <sstream>
 #include <unordered_map>
 
-#include "msh_error.h"
+#include "msh_words.h"
 
 namespace PeriDeal
 {
@@ -30,122 +28,7 @@ namespace PeriDeal
   {
     const std::string supported =
       " PeriDeal reads Gmsh files (.msh, versions 2.2 and 4.1 as text) of quadrilaterals in 2D and hexahedra in 3D only "
-      "(in Gmsh: recombine all surfaces, or use transfinite or extruded volumes).";
-
-
-    /** The words of a file, with their lines. */
-    class Words
-    {
-    public:
-      Words(const std::string &text, const std::string &name)
-        : text(text)
-        , name(name)
-      {}
-
-      /** The next word; at the end of the file an error that says what is missing. */
-      std::string_view next(const std::string &expected)
-      {
-        while (position < text.size() && is_blank(text[position]))
-          {
-            line += text[position] == '\n' ? 1 : 0;
-            ++position;
-          }
-        const std::size_t begin = position;
-        while (position < text.size() && !is_blank(text[position]))
-          ++position;
-        if (begin == position)
-          broken("the file ends", expected);
-        return std::string_view(text).substr(begin, position - begin);
-      }
-
-      double real(const std::string &what)
-      {
-        const std::string word(next(what));
-        char             *end   = nullptr;
-        const double      value = std::strtod(word.c_str(), &end);
-        if (*end != '\0' || word.find_first_not_of("0123456789+-.eE") != std::string::npos)
-          broken("found '" + shortened(word) + "'", what);
-        if (!(std::abs(value) < 1e100)) // squares and products have to be finite, too
-          broken("found " + shortened(word) + ", which is too large", what);
-        return value;
-      }
-
-      int whole(const std::string &what, const long lowest, const long highest)
-      {
-        const std::string word(next(what));
-        const bool        digits = word.size() < 12 &&
-                            word.find_first_not_of("0123456789", word[0] == '-' ? 1 : 0) ==
-                              std::string::npos;
-        char      *end   = nullptr;
-        const long value = std::strtol(word.c_str(), &end, 10);
-        if (!digits || *end != '\0')
-          broken("found '" + shortened(word) + "'", what);
-        if (value < lowest || value > highest)
-          broken("found " + word,
-                 what + (highest == largest ?
-                           ", " + std::to_string(lowest) + " or more" :
-                           ", from " + std::to_string(lowest) + " to " + std::to_string(highest)));
-        return static_cast<int>(value);
-      }
-
-      /** A number of things that follow, of which each takes two letters at least. */
-      int count(const std::string &what)
-      {
-        const int n = whole(what, 0, largest);
-        if (static_cast<std::size_t>(n) > (text.size() - position) / 2 + 1)
-          broken("found " + std::to_string(n) + ", more than the rest of the file can hold", what);
-        return n;
-      }
-
-      void skip_to(const std::string &end)
-      {
-        while (next("'" + end + "'") != end)
-          {}
-      }
-
-      void require(const std::string &expected)
-      {
-        const std::string word(next("'" + expected + "'"));
-        if (word != expected)
-          broken("found '" + shortened(word) + "'", "'" + expected + "'");
-      }
-
-      [[noreturn]] void broken(const std::string &found, const std::string &expected) const
-      {
-        msh_error(name, line, "the file is broken: " + found + ", expected " + expected + ".");
-      }
-
-      [[noreturn]] void error(const std::string &what) const
-      {
-        msh_error(name, line, what);
-      }
-
-      unsigned int line_number() const
-      {
-        return line;
-      }
-
-      static constexpr long largest = 2147483646;
-
-    private:
-      static bool is_blank(const char c)
-      {
-        return std::isspace(static_cast<unsigned char>(c)) != 0;
-      }
-
-      static std::string shortened(const std::string &word)
-      {
-        std::string result = word.size() > 40 ? word.substr(0, 40) + "..." : word;
-        for (char &c : result) // of a file that is no text
-          if (std::iscntrl(static_cast<unsigned char>(c)) != 0 || static_cast<signed char>(c) < 0)
-            c = '?';
-        return result;
-      }
-
-      const std::string &text, &name;
-      std::size_t        position = 0;
-      unsigned int       line     = 1;
-    };
+      "(in Gmsh: 'Recombine Surface' and Mesh.SubdivisionAlgorithm = 1 make quadrilaterals, = 2 hexahedra; or use transfinite or extruded volumes).";
 
 
     const char *type_name(const int type)
@@ -174,12 +57,42 @@ namespace PeriDeal
     }
 
 
+    unsigned int type_dimension(const int type)
+    {
+      return type == 15 ? 0 : type == 1 ? 1 : type < 4 ? 2 : 3;
+    }
+
+
+    /** Of sides: the first number of each name that has several, by the others. */
+    std::map<int, int> ids_of_one_name(const std::string &text, const unsigned int dim)
+    {
+      std::map<int, int>         same;
+      std::map<std::string, int> first;
+      const std::size_t          begin = text.find("$PhysicalNames");
+      if (begin == std::string::npos)
+        return same;
+      std::istringstream lines(text.substr(begin, text.find("$EndPhysicalNames", begin) - begin));
+      for (std::string line; std::getline(lines, line);)
+        {
+          std::istringstream words(line);
+          unsigned int       of_dim = 0;
+          int                id     = -1;
+          const std::size_t  from = line.find('"'), to = line.rfind('"');
+          if (words >> of_dim >> id && of_dim + 1 == dim && id >= 0 && from < to)
+            if (const auto found = first.emplace(line.substr(from, to - from), id); !found.second)
+              same[id] = found.first->second;
+        }
+      return same;
+    }
+
+
     class Parser
     {
     public:
       Parser(const std::string &text, const std::string &name, const unsigned int dim)
         : words(text, name)
         , dim(dim)
+        , same(ids_of_one_name(text, dim))
       {}
 
       MshMesh parse()
@@ -279,21 +192,21 @@ namespace PeriDeal
       }
 
 
-      void read_node(const int number)
-      {
-        const unsigned int index = mesh.points.size();
-        if (!index_of.insert({number, index}).second)
-          words.broken("found node " + std::to_string(number) + " twice", "each number once");
-        mesh.numbers.push_back(number);
-      }
-
-
+      /** The place of a node; one that is given once more has to be at the same one. */
       void read_point(const int number)
       {
-        mesh.points.emplace_back();
+        std::array<double, 3> p;
         for (unsigned int d = 0; d < 3; ++d)
-          mesh.points.back()[d] =
-            words.real(std::string(1, "xyz"[d]) + " of node " + std::to_string(number));
+          p[d] = words.real(std::string(1, "xyz"[d]) + " of node " + std::to_string(number));
+        ++n_points;
+        const auto [entry, is_new] = index_of.insert({number, mesh.points.size()});
+        if (!is_new && mesh.points[entry->second] != p)
+          words.broken("found node " + std::to_string(number) + " twice, at different places",
+                       "each number once");
+        if (!is_new)
+          return;
+        mesh.points.push_back(p);
+        mesh.numbers.push_back(number);
       }
 
 
@@ -319,7 +232,7 @@ namespace PeriDeal
                   words.error("parametric coordinates of nodes are not read. Save the file without "
                               "them (in Gmsh: Mesh.SaveParametric = 0).");
                 n = words.count("the number of nodes in this block");
-                if (n > n_nodes - static_cast<int>(mesh.points.size()))
+                if (n > n_nodes - n_points)
                   words.broken("found " + std::to_string(n) + " nodes in this block",
                                "no more than " + std::to_string(n_nodes) +
                                  " in all, as '$Nodes' says");
@@ -327,27 +240,18 @@ namespace PeriDeal
             if (is_latest)
               {
                 // all numbers come first
-                const std::size_t before = mesh.numbers.size();
-                for (int i = 0; i < n; ++i)
-                  {
-                    const int number = node_number();
-                    if (!index_of.insert({number, before + i}).second)
-                      words.broken("found node " + std::to_string(number) + " twice",
-                                   "each number once");
-                    mesh.numbers.push_back(number);
-                  }
-                for (int i = 0; i < n; ++i)
-                  read_point(mesh.numbers[before + i]);
+                std::vector<int> numbers(n);
+                for (int &number : numbers)
+                  number = node_number();
+                for (const int number : numbers)
+                  read_point(number);
               }
             else
               for (int i = 0; i < n; ++i)
-                {
-                  read_node(node_number());
-                  read_point(mesh.numbers.back());
-                }
+                read_point(node_number());
           }
-        if (static_cast<int>(mesh.points.size()) != n_nodes)
-          words.broken("found " + std::to_string(mesh.points.size()) + " nodes in all blocks",
+        if (n_points != n_nodes)
+          words.broken("found " + std::to_string(n_points) + " nodes in all blocks",
                        std::to_string(n_nodes) + ", as '$Nodes' says");
       }
 
@@ -386,7 +290,7 @@ namespace PeriDeal
               {
                 const auto entity = read_entity();
                 type              = read_type();
-                const int of_type = type == 15 ? 0 : type == 1 ? 1 : type < 4 ? 2 : 3;
+                const int of_type = type_dimension(type);
                 if (of_type != entity.first)
                   words.broken("found a " + std::string(type_name(type)) +
                                  " in an entity of dimension " + std::to_string(entity.first),
@@ -455,7 +359,8 @@ namespace PeriDeal
                 id            = k == 0 ? tag : id;
               }
           }
-        element.id = id;
+        const auto other = same.find(id);
+        element.id = other == same.end() || type_dimension(type) + 1 != dim ? id : other->second;
         element.n  = type == 15 ? 1 : type == 1 ? 2 : type == 3 ? 4 : 8;
         for (unsigned int k = 0; k < element.n; ++k)
           {
@@ -477,13 +382,40 @@ namespace PeriDeal
 
       Words                                 words;
       const unsigned int                    dim;
+      const std::map<int, int>              same; // first of the groups that share a name
       bool                                  is_old = false, is_latest = false;
       bool                                  has_entities = false, partitioned = false;
+      int                                   n_points = 0; // as often as they are given
       std::map<std::pair<int, int>, int>    ids; // physical, of entities (dimension, number)
       std::unordered_map<int, unsigned int> index_of, elements; // of node numbers; their lines
       MshMesh                               mesh;
     };
   } // namespace
+
+
+  std::string text_of_msh(const MshMesh &mesh, const unsigned int dim)
+  {
+    std::ostringstream text;
+    text << std::setprecision(17) << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n"
+         << mesh.points.size() << "\n";
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+      text << i + 1 << " " << mesh.points[i][0] << " " << mesh.points[i][1] << " "
+           << mesh.points[i][2] << "\n";
+    text << "$EndNodes\n$Elements\n" << mesh.sides.size() + mesh.cells.size() << "\n";
+    constexpr int types[4] = {15, 1, 3, 5};
+    std::size_t   number   = 0;
+    for (const auto *const list : {&mesh.sides, &mesh.cells})
+      for (const MshElement &element : *list)
+        {
+          text << ++number << " " << types[list == &mesh.cells ? dim : dim - 1] << " 2 "
+               << element.id << " " << element.id;
+          for (unsigned int k = 0; k < element.n; ++k)
+            text << " " << element.nodes[k] + 1;
+          text << "\n";
+        }
+    text << "$EndElements\n";
+    return text.str();
+  }
 
 
   MshMesh parse_msh(const std::string &text, const std::string &name, const unsigned int dim)

@@ -75,7 +75,8 @@ namespace PeriDeal
         int                id     = -1;
         const std::size_t  begin = line.find('"'), end = line.rfind('"');
         if (words >> of_dim >> id && of_dim + 1 == dim && id >= 0 && begin < end)
-          names[trimmed(line.substr(begin + 1, end - begin - 1))] = id;
+          names.emplace(trimmed(line.substr(begin + 1, end - begin - 1)),
+                        id); // the first of a name
       }
     return names;
   }

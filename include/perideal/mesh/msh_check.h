@@ -32,25 +32,28 @@ namespace PeriDeal
 
 
   /**
-   * Read a Gmsh file as text, of the versions 2 to 2.2, 4.0 and 4.1, as deal.II's
-   * GridIn::read_msh() does, which follows wrong counts and missing ends of sections blindly.
-   * Checked: header, order and ends of sections, counts, whole and finite numbers, numbers of nodes
-   * and elements given once, entities and nodes that are named exist, types of elements that a mesh
-   * of that dimension can have.
+   * Read a Gmsh file as text, of the versions 2 to 2.2, 4.0 and 4.1. Comments between sections are
+   * passed over, groups of sides with one name are one, nodes that are given twice at one place
+   * count once. Checked: header, order and ends of sections, counts, whole and finite numbers,
+   * numbers of elements given once, entities and nodes that are named exist, types of elements that
+   * a mesh of that dimension can have.
    *
    * @param name of the file, for messages. Throws UserError: one sentence with the line, what was
    * found and what is expected. Not collective.
    */
   MshMesh parse_msh(const std::string &text, const std::string &name, const unsigned int dim);
 
+  /** A mesh as text, version 2.2, as deal.II reads it. Not collective. */
+  std::string text_of_msh(const MshMesh &mesh, const unsigned int dim);
+
   /**
    * Whether the cells are a mesh. Each has a positive length, area or volume at each of its nodes
    * (or a negative one at each: then deal.II turns it around), none is there twice, each face
-   * belongs to at most two, which lie on opposite sides of it; each side is a face of one cell and
-   * has one id. What has passed this can be ordered by GridTools::consistently_order_cells(), which
-   * loops on folded cells.
+   * belongs to at most two, which lie on opposite sides of it; each side is a face of a cell and
+   * has one id. Sides between two cells are taken out. What has passed this can be ordered by
+   * GridTools::consistently_order_cells(), which loops on folded cells.
    *
    * Throws UserError as parse_msh() does. Not collective.
    */
-  void check_msh(const MshMesh &mesh, const std::string &name, const unsigned int dim);
+  void check_msh(MshMesh &mesh, const std::string &name, const unsigned int dim);
 } // namespace PeriDeal
