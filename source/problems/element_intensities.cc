@@ -8,8 +8,11 @@
 
 #include <perideal/analysis/bond_intensities.h>
 #include <perideal/laws/elasticity.h>
+#include <perideal/operators/parts/carried_parts.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace PeriDeal
 {
@@ -134,11 +137,32 @@ namespace PeriDeal
                QGauss<dim - 1>(dofs.get_fe().degree + more_points_in_rings(dim)),
                needed_in_rings() | update_normal_vectors)
         , nodes(dofs.get_fe().n_dofs_per_cell())
-      {}
+      {
+        if (bonds || !CarriedParts<dim>::apply_to(scene))
+          return;
+        carried.emplace(scene.domain);
+        carried->set(scene.cracks.pieces(elements.crack_time()));
+      }
 
       template <typename Integral>
       void add(const Cell &cell, std::vector<Integral> &ends)
       {
+        if (carried)
+          if (const auto rule =
+                carried->region(cell, cell->get_fe().degree + more_points_in_rings(dim)))
+            {
+              if (rule->size() == 0)
+                return;
+              FEValues<dim> of_region(cell->get_fe(), *rule, needed_in_rings());
+              of_region.reinit(cell);
+              visit(cell, of_region, [&](const RingPoint<dim> &point, const unsigned int) {
+                for (auto &end : ends)
+                  end.add(point);
+              });
+              return;
+            }
+        if (elements.cut_cells()[cell->active_cell_index()])
+          return;
         inside.reinit(cell);
         visit(cell, inside, [&](const RingPoint<dim> &point, const unsigned int) {
           for (auto &end : ends)
@@ -147,7 +171,7 @@ namespace PeriDeal
         // Beside a crack that bonds know there is a body up to the crack.
         for (const unsigned int face : cell->face_indices())
           {
-            if (cell->at_boundary(face) || !cell->neighbor(face)->is_active() ||
+            if (carried || cell->at_boundary(face) || !cell->neighbor(face)->is_active() ||
                 !elements.cut_cells()[cell->neighbor(face)->active_cell_index()])
               continue;
             edge.reinit(cell, face);
@@ -186,7 +210,29 @@ namespace PeriDeal
       FEValues<dim>                        inside;
       FEFaceValues<dim>                    edge;
       std::vector<types::global_dof_index> nodes;
+      std::optional<CarriedParts<dim>>     carried; // by cells beside those that are removed
     };
+
+
+    /**
+     * J is right to the order of the energy, the interaction integrals to that of stresses: so
+     * their ratio tells the modes, and J how much there is of both.
+     */
+    template <int dim>
+    void take_amount_of_j(const Scene<dim> &scene, StressIntensity &found)
+    {
+      constexpr double alike  = 0.2;
+      const Moduli     moduli = scene.material.moduli(scene.domain.lower);
+      const double     E = moduli.young(), nu = moduli.poisson(),
+                   plane_modulus =
+                     scene.elasticity.plane == PlaneState::stress ? E : E / (1. - nu * nu),
+                   square = found.mode_1 * found.mode_1 + found.mode_2 * found.mode_2,
+                   ratio  = plane_modulus * found.j / square;
+      if (dim != 2 || !(square > 0.) || !(std::abs(ratio - 1.) < alike))
+        return;
+      found.mode_1 *= std::sqrt(ratio);
+      found.mode_2 *= std::sqrt(ratio);
+    }
   } // namespace
 
 
@@ -205,14 +251,16 @@ namespace PeriDeal
     RingCells<dim> cells(scene, elements, dofs, u, bonds, t);
     u.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && !elements.cut_cells()[cell->active_cell_index()] &&
-          std::any_of(ends.begin(), ends.end(), [&](const auto &end) {
-            return end.reaches(cell->center(), cell->diameter());
+      if (cell->is_locally_owned() && std::any_of(ends.begin(), ends.end(), [&](const auto &end) {
+            return end.reaches(cell->center(), 4. * cell->diameter()); // carried parts are beyond
           }))
         cells.add(cell, ends);
     u.set_ghost_state(false);
     for (auto &end : ends)
       list.push_back(end.result(dofs.get_communicator()));
+    if (!bonds || scene.cracks.on_faces())
+      for (StressIntensity &found : list)
+        take_amount_of_j(scene, found);
     return list;
   }
 

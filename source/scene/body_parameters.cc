@@ -121,6 +121,8 @@ namespace PeriDeal
       body.initial_and_source.parse(physics, dim);
       body.boundary_conditions.parse(true, false, physics);
       body.cracks.parse(physics);
+      if (physics == Physics::elasticity)
+        body.cracks.mesh = CrackMesh::removed;
       body.peridynamics.parse(physics);
       body.peridynamics.treatment = BoundaryTreatment::none;
       if (physics != Physics::elasticity)

@@ -156,7 +156,7 @@ namespace PeriDeal
       "What finite elements and the mesh do with a crack: in cut cells the conductances of the "
       "node "
       "pairs that the crack does not separate; the crack lies on cell faces, which are doubled; "
-      "or cut cells conduct nothing. `auto`: pairs, with `Physics = elasticity` removed; there pairs are not defined.",
+      "or cut cells conduct nothing. `auto`: pairs; with `Physics = elasticity`, where pairs are not defined, faces for cracks in 2D that run along the axes and lie still, where bonds do not break and faces do not press on each other, else removed.",
       {"pairs", "faces", "removed", "auto"});
     declare(
       "Nodes on cracks",
@@ -242,8 +242,8 @@ namespace PeriDeal
     parse_segments();
     parse_polygons();
     mesh = choice<CrackMesh>("Mesh");
-    if (mesh == CrackMesh::automatic)
-      mesh = physics == Physics::elasticity ? CrackMesh::removed : CrackMesh::pairs;
+    if (mesh == CrackMesh::automatic && physics != Physics::elasticity)
+      mesh = CrackMesh::pairs; // of solids the scene decides (lay_cracks_on_faces())
     through_tips    = choice<ThroughTips>("Bonds through tips");
     nodes_on_cracks = choice<NodesOnCracks>("Nodes on cracks");
     parse_conductance();

@@ -226,9 +226,10 @@ namespace PeriDeal
                               general.physics,
                               elasticity.computes_temperature);
     cracks.parse(general.physics);
-    keep_cracks_off_nodes(*this);
     peridynamics.parse(general.physics);
     coupling.parse(this->deforms && (material.fracture_energy || material.critical_stretch));
+    lay_cracks_on_faces(*this);
+    keep_cracks_off_nodes(*this);
     finite_elements.parse(general.physics, elasticity.computes_temperature);
     make_heat_problem(*this);
     // a conductor without capacitance is always in its steady state, and an equilibrium has a time

@@ -32,7 +32,7 @@ namespace PeriDeal
       return;
     find_critical_stretches();
     if (bonds.rows.has_lattice())
-      screen = std::make_unique<StretchScreen<dim>>(bonds.families, critical);
+      screen = std::make_unique<StretchScreen<dim>>(bonds.families, critical.least_at_nodes());
     if (bonds.kinematics.is_full())
       watch_limits();
     loaded_side = loads.sides_nearby(bonds.families);
@@ -45,9 +45,9 @@ namespace PeriDeal
     std::vector<double> limits(bonds.families.nodes().n_owned());
     for (unsigned int i = 0; i < limits.size(); ++i)
       {
-        limits[i] = critical[i];
+        limits[i] = critical.of_nodes()[i];
         bonds.rows.for_each_stored(i, [&](const auto &bond) {
-          limits[i] = std::min(limits[i], critical[bond.neighbor]);
+          limits[i] = std::min(limits[i], critical.of_bond(i, bond.neighbor));
         });
         limits[i] *= 1. - 1e-9; // what is found by other operations differs by round-off
       }
@@ -58,11 +58,13 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::find_critical_stretches()
   {
-    critical = critical_stretches_of_families(
-      bonds.families,
-      body,
-      [&](const unsigned int i) -> const StateLaw & { return bonds.laws[i]; },
-      bonds.laws.volumetric);
+    critical.set(bonds.families,
+                 body.material,
+                 critical_stretches_of_families(
+                   bonds.families,
+                   body,
+                   [&](const unsigned int i) -> const StateLaw & { return bonds.laws[i]; },
+                   bonds.laws.volumetric));
   }
 
 
@@ -71,7 +73,7 @@ namespace PeriDeal
   {
     const CrossingSums sums   = crossing_sums(bonds.families);
     const StateLaw    &law    = bonds.laws[0];
-    const double       square = critical[0] * critical[0];
+    const double       square = critical.of_nodes()[0] * critical.of_nodes()[0];
     const double       shared =
       bonds.laws.volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.;
     const double ball =
@@ -92,8 +94,7 @@ namespace PeriDeal
     const Tensor<1, dim>       xi  = bonds.families.neighbors().bond_vector(i, bond.neighbor);
     const double               all = kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
                                                             bond.moment * xi;
-    return {kinematics.extension_moment(u, i, bond),
-            all * std::min(critical[i], critical[bond.neighbor])};
+    return {kinematics.extension_moment(u, i, bond), all * critical.of_bond(i, bond.neighbor)};
   }
 
 

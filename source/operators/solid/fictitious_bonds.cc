@@ -313,8 +313,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  Overstretched FictitiousBonds<dim>::find_overstretched(const double              *u,
-                                                         const std::vector<double> &critical) const
+  Overstretched FictitiousBonds<dim>::find_overstretched(const double             *u,
+                                                         const BondStrengths<dim> &critical) const
   {
     Overstretched result;
     if (!fictitious.any_mirrored_alone())
@@ -323,11 +323,10 @@ namespace PeriDeal
     for_each([&](const Bond &bond) {
       if (!may_break(bond))
         return;
-      const Tensor<1, dim> xi  = bond_vector(bond);
-      const double         all = lengths.empty() ? bond.moment * xi : length(bond) * xi.norm();
-      const double         limit =
-        all * std::min(critical[bond.node], critical[fictitious[bond.image].origin]);
-      const double found = extension_moment(bond, u);
+      const Tensor<1, dim> xi    = bond_vector(bond);
+      const double         all   = lengths.empty() ? bond.moment * xi : length(bond) * xi.norm();
+      const double         limit = all * critical.of_bond(bond.node, fictitious[bond.image].origin);
+      const double         found = extension_moment(bond, u);
       if (found > limit)
         result.emplace_back(bond.number, found / limit);
     });

@@ -68,8 +68,8 @@ namespace PeriDeal
     , zone(*coupling.breakable())
     , nodes(zone.families_of_bonds().nodes())
     , share_of_zone(body.coupling.follows_stretches() ? body.coupling.zone_share : 0.)
-    , critical(bonds.critical_stretches(body))
   {
+    critical.set(zone.families_of_bonds(), body.material, bonds.critical_stretches(body));
     if (share_of_zone > 0.)
       find_cells(dofs);
   }
@@ -100,7 +100,7 @@ namespace PeriDeal
         double stretch = change / xi.norm_square();
         if (!thermal.empty())
           stretch -= 0.5 * (thermal[i] + thermal[j]);
-        take(i, j, stretch, std::min(critical[i], critical[j]));
+        take(i, j, stretch, critical.of_bond(i, j));
       });
   }
 
@@ -251,7 +251,7 @@ namespace PeriDeal
         }
     for (const unsigned int i : corners)
       {
-        limit = std::min(limit, critical[i]);
+        limit = std::min(limit, critical.least_at_nodes()[i]);
         warm += thermal.empty() ? 0. : thermal[i] / n_corners;
       }
     const SymmetricTensor<2, dim> strain = symmetrize(gradient);
@@ -489,7 +489,7 @@ namespace PeriDeal
   std::size_t ZoneBreaking<dim>::memory_consumption() const
   {
     return bonds.memory_consumption() +
-           (critical.capacity() + thermal.capacity()) * sizeof(double) +
+           critical.memory_consumption() + thermal.capacity() * sizeof(double) +
            cells.memory_consumption() + broken.capacity() * sizeof(Break);
   }
 

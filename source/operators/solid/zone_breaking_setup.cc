@@ -93,7 +93,7 @@ namespace PeriDeal
       double limit = std::numeric_limits<double>::max(), warm = 0.;
       for (const unsigned int i : corners)
         {
-          limit = std::min(limit, critical[i]);
+          limit = std::min(limit, critical.least_at_nodes()[i]);
           warm += thermal.empty() ? 0. : thermal[i] / n_corners;
         }
       return share_of_zone * limit + warm;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/operators/solid/bond_strengths.h>
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/operators/solid/solid_bonds.h>
 #include <perideal/operators/solid/solid_loads.h>
@@ -18,10 +19,10 @@
 namespace PeriDeal
 {
   /**
-   * Bonds that break for good at a stretch e/x of the smaller critical value s of both ends'
-   * materials. It is given, or follows from the fracture energy: what crosses a plane of the
-   * lattice, mean over the axes n, has stored, at this stretch while all else is at rest, s^2 (b B
-   * + c d D) with
+   * Bonds that break for good at a stretch e/x of the smallest critical value s of the materials on
+   * their way (BondStrengths). It is given, or follows from the fracture energy: what crosses a
+   * plane of the lattice, mean over the axes n, has stored, at this stretch while all else is at
+   * rest, s^2 (b B + c d D) with
    *   B = 1/q sum over half the family of omega f V xi_n x^2,
    *   D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2.
    * q stays that of the body before.
@@ -114,7 +115,7 @@ namespace PeriDeal
     /** Of the owned nodes and their ghosts; empty where bonds do not break. */
     const std::vector<double> &critical_stretches() const
     {
-      return critical;
+      return critical.of_nodes();
     }
 
     /**
@@ -132,7 +133,7 @@ namespace PeriDeal
 
     std::size_t memory_consumption() const
     {
-      return state.memory_consumption() + critical.capacity() * sizeof(double) +
+      return state.memory_consumption() + critical.memory_consumption() +
              loaded_side.capacity() * sizeof(unsigned int) +
              (screen ? screen->memory_consumption() : 0);
     }
@@ -155,7 +156,7 @@ namespace PeriDeal
     SolidBonds<dim>           &bonds;
     const BodyParameters<dim> &body;
     const bool                 breaks, changes; // some bond may break, or be cut by a growing crack
-    std::vector<double>        critical;
+    BondStrengths<dim>         critical;
     BondState                  state;
     BreakHistory               so_far;
     std::vector<unsigned int>  loaded_side;     // which in `Traction` is within a horizon of these

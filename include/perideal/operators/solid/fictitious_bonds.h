@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/bonds/bond_state.h>
+#include <perideal/operators/solid/bond_strengths.h>
 #include <perideal/operators/solid/fictitious_images.h>
 #include <perideal/operators/solid/solid_rows.h>
 #include <perideal/operators/solid/thermal_strains.h>
@@ -167,8 +168,7 @@ namespace PeriDeal
 
     unsigned int n_ends(const Bond &bond) const;
 
-    /** @param critical stretches of owned nodes and ghosts */
-    Overstretched find_overstretched(const double *u, const std::vector<double> &critical) const;
+    Overstretched find_overstretched(const double *u, const BondStrengths<dim> &critical) const;
 
     /** Visit the bonds of a list: visit(bond, ratio). */
     template <typename Visit>

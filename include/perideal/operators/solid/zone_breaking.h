@@ -6,6 +6,7 @@
 #include <perideal/bonds/bond_break.h>
 #include <perideal/operators/coupling/breakable_zone.h>
 #include <perideal/operators/coupling/coupling.h>
+#include <perideal/operators/solid/bond_strengths.h>
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/operators/solid/stretched_cells.h>
 #include <perideal/operators/solid/zone_bonds.h>
@@ -23,8 +24,7 @@ namespace PeriDeal
    * Bonds of a coupled solid that break for good, and a zone that follows (`Zone = follow`).
    *
    * A bond breaks at a stretch (xi . (u_j - u_i))/x^2 - alpha dT, dT the mean of its ends, beyond
-   * the smaller critical stretch of both ends (ZoneBonds::critical_stretches()), where the zone
-   * lets it (BreakableZone::may_break()). In an exchange a cell between whose vertices a bond has
+   * the smallest critical stretch on the way (BondStrengths), where the zone lets it (BreakableZone::may_break()). In an exchange a cell between whose vertices a bond has
    * broken keeps nothing (LatticeBonds::is_parted()).
    *
    * The zone grows around the centre of a cell whose largest principal strain, thermal strain taken
@@ -176,7 +176,7 @@ namespace PeriDeal
     BreakableZone<dim> &zone;
     const Nodes<dim>   &nodes;
     const double        share_of_zone; // 0: the zone stays
-    std::vector<double> critical;      // of all nodes known here
+    BondStrengths<dim>  critical;
     std::vector<double> thermal;
     StretchedCells<dim> cells;          // whose centres have lit nothing yet
     std::vector<Break>  broken;         // in the order of breaking

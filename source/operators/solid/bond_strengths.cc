@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/point_order.h>
+#include <perideal/base/user_error.h>
+#include <perideal/operators/solid/bond_strengths.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "stretch_fault.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Round-off of formulas. */
+    constexpr double weaker = 1. - 1e-9;
+
+
+    /** The least value at places between two points, and where. */
+    template <int dim>
+    std::pair<double, Point<dim>> least_between(const MaterialProperty &strength,
+                                                const Point<dim>       &a,
+                                                const Point<dim>       &b,
+                                                const unsigned int      n_places)
+    {
+      std::pair<double, Point<dim>> found(std::numeric_limits<double>::max(), a);
+      for (unsigned int k = 0; k < n_places; ++k)
+        {
+          const Point<dim> p = a + (k + 0.5) / n_places * (b - a);
+          if (const double value = strength.value(p); value < found.first)
+            found = {value, p};
+        }
+      return found;
+    }
+  } // namespace
+
+
+  template <int dim>
+  std::vector<bool> BondStrengths<dim>::beside_weaker(const Families<dim>    &families,
+                                                      const MaterialProperty &strength) const
+  {
+    constexpr unsigned int n_places = 8;
+    const Nodes<dim>      &places   = families.nodes();
+    std::vector<bool>      result(places.n_local(), !places.lattice());
+    if (!places.lattice())
+      return result;
+    // To the next node along each axis and across each cell at one end of it.
+    std::vector<Tensor<1, dim>> ways;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        ways.emplace_back();
+        ways.back()[d] = places.lattice()->spacing[d];
+      }
+    for (unsigned int k = 0; dim > 1 && k < 1u << (dim - 1); ++k)
+      {
+        ways.emplace_back(places.lattice()->spacing);
+        for (unsigned int d = 0; d + 1 < dim; ++d)
+          ways.back()[d] *= (k >> d) & 1 ? -1. : 1.;
+      }
+    for (unsigned int i = 0; i < places.n_local(); ++i)
+      {
+        const Point<dim> &p   = places.position(i);
+        const double      own = strength.value(p);
+        for (unsigned int k = 0; k < ways.size() && !result[i]; ++k)
+          result[i] = least_between<dim>(strength, p, p + ways[k], n_places).first < weaker * own ||
+                      least_between<dim>(strength, p, p - ways[k], n_places).first < weaker * own;
+      }
+    return result;
+  }
+
+
+  template <int dim>
+  void BondStrengths<dim>::set(const Families<dim> &families,
+                               const Material      &material,
+                               std::vector<double>  of_nodes)
+  {
+    nodes                             = std::move(of_nodes);
+    const bool              of_energy = !material.critical_stretch;
+    const MaterialProperty &strength  = of_energy ? *material.fracture_energy :
+                                                    *material.critical_stretch;
+    if (strength.is_constant())
+      return;
+    constexpr unsigned int                      n_places = 32;
+    const Nodes<dim>                           &places   = families.nodes();
+    const std::vector<bool>                     beside   = beside_weaker(families, strength);
+    std::vector<typename Families<dim>::Member> family;
+    std::string                                 message;
+    Vector                                      lowest(places.partitioner());
+    begins.assign(1, 0);
+    for (unsigned int i = 0; i < places.n_owned(); ++i)
+      {
+        lowest.local_element(i) = nodes[i];
+        families.members_of(i, family);
+        bool any = beside[i];
+        for (const auto &bond : family)
+          any = any || beside[bond.neighbor];
+        for (const auto &bond : family)
+          {
+            const unsigned int j = bond.neighbor;
+            if (!any || j == i)
+              continue;
+            // The same digits at both ends of a bond.
+            const bool         ahead = comes_first(places.position(i), places.position(j));
+            const unsigned int first = ahead ? i : j, last = ahead ? j : i;
+            const double       at_first = strength.value(places.position(first)),
+                         at_last        = strength.value(places.position(last));
+            const auto found =
+              least_between<dim>(strength, places.position(first), places.position(last), n_places);
+            const double value = found.first;
+            if (!(value < weaker * std::min(at_first, at_last)))
+              continue;
+            if (!(value > 0.))
+              {
+                message = message.empty() ? stretch_fault(!of_energy, found.second) : message;
+                continue;
+              }
+            const auto of_weakest = [&](const double at_end) {
+              return of_energy ? std::sqrt(value / at_end) : value / at_end;
+            };
+            const double stretch = std::min({nodes[first],
+                                             nodes[last],
+                                             nodes[first] * of_weakest(at_first),
+                                             nodes[last] * of_weakest(at_last)});
+            weak.push_back({j, stretch});
+            lowest.local_element(i) = std::min(lowest.local_element(i), stretch);
+          }
+        begins.push_back(weak.size());
+      }
+    throw_on_all_if_any(places.communicator(), message);
+    if (Utilities::MPI::sum(weak.size(), places.communicator()) == 0)
+      begins.clear();
+    lowest.update_ghost_values();
+    if (!begins.empty())
+      least.assign(lowest.begin(), lowest.begin() + places.n_local());
+  }
+
+
+  template class BondStrengths<1>;
+  template class BondStrengths<2>;
+  template class BondStrengths<3>;
+} // namespace PeriDeal

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Cracks in slender bodies: stress intensities of an end-notched flexure and of a double cantilever.
+
+References: quadratic elements with the crack on faces of 640 x 40 cells (flexure, K_II = 129.0; beams with a correction 130.3) and of 256 x 32 and 512 x 64 cells (double cantilever, K_I = 32.68 by J,
+whose square differs by 7e-4 between the two).
+
+    slender_cracks.py default | removed | ranks
+"""
+
+import math
+import sys
+
+from scene_test import Comparison, check, finish, run_scene
+
+FE, COUPLED = "finite elements", "coupled"
+TIP = "crack 1 end 2"
+K_FLEXURE, K_CANTILEVER = 129.0, 32.68
+
+COMMON = """
+set Dimension = 2
+set Physics = elasticity
+set Models = finite elements, coupled
+subsection Material
+  set Young modulus = 71700
+  set Poisson ratio = 0.33
+end
+subsection Elasticity
+  set Contact = false
+end
+subsection Output
+  set Fields = none
+end
+"""
+
+FLEXURE = COMMON + """
+subsection Domain
+  set Lower corner = -0.5, -0.5
+  set Upper corner = 15.5, 0.5
+end
+subsection Boundary conditions
+  set Parts = lower: point 0, -0.5 ; upper: point 0, 0.5 ; rfoot: point 15, -0.5 ; load: point 7.5, 0.5 ; mid: point 7.5,-0.5
+  set Displacement = rfoot: free, 0 ; mid: 0, 0
+  set Traction = lower: 0, 2.5 ; upper: 0, 2.5 ; load: 0, -10
+end
+subsection Cracks
+  set Segments = -0.5,0 ; 6,0
+end
+"""
+
+CANTILEVER = COMMON + """
+subsection Domain
+  set Lower corner = 0, -0.5
+  set Upper corner = 8, 0.5
+end
+subsection Boundary conditions
+  set Parts = lower: point 0, -0.5 ; upper: point 0, 0.5
+  set Displacement = right: 0, 0
+  set Traction = lower: 0, -1 ; upper: 0, 1
+end
+subsection Cracks
+  set Segments = 0,0 ; 3,0
+end
+"""
+
+
+def flexure(n, more=None, ranks=1):
+    return run_scene(FLEXURE, {"Domain/Cells": f"{16 * n}, {n}", **(more or {})}, ranks=ranks)
+
+
+def cantilever(n, more=None, ranks=1):
+    return run_scene(CANTILEVER, {"Domain/Cells": f"{8 * n}, {n}", **(more or {})}, ranks=ranks)
+
+
+def gap(run, model, mode, reference):
+    return abs(run.model(model)["stress intensity"][TIP][mode]) / reference - 1
+
+
+def default():
+    """Cracks on faces, of lattices on which they do not lie at first, too."""
+    table = Comparison("Cracks on faces")
+    for n in (30, 31, 61):
+        bent, opened = flexure(n), cantilever(n)
+        for model in (FE, COUPLED):
+            table.add_limit(f"{model}, {n} cells: K_II of the flexure", abs(gap(bent, model, "II", K_FLEXURE)), 0.015)
+            table.add_limit(f"{model}, {n} cells: K_I of the cantilever", abs(gap(opened, model, "I", K_CANTILEVER)), 0.015)
+        for run in (bent, opened):
+            check(any("are cut into the mesh" in note for note in run.summary["notes"]), f"{n} cells: a note: {run.summary['notes']}")
+    # Ends that lie on no vertex: K goes with the length in the flexure, and nearly so in the
+    # cantilever (arms turn where they end: K ~ a + 0.64 of their height).
+    for shift in (0.007, 0.016):
+        bent, opened = flexure(31, {"Cracks/Segments": f"-0.5,0 ; {6 + shift},0"}), cantilever(31, {"Cracks/Segments": f"0,0 ; {3 + shift},0"})
+        for model in (FE, COUPLED):
+            table.add_limit(f"{model}, tip {shift} farther: K_II of the flexure", abs(gap(bent, model, "II", K_FLEXURE * (1 + shift / 6))), 0.015)
+            table.add_limit(f"{model}, tip {shift} farther: K_I of the cantilever", abs(gap(opened, model, "I", K_CANTILEVER * (1 + shift / 3.32))), 0.015)
+    table.show()
+
+
+def removed():
+    """The lattice as it is given: cells beside the crack carry what lies of those that it cuts, and a tip may end anywhere in one."""
+    table = Comparison("Cut cells removed")
+    keep = {"Models": FE, "Cracks/Mesh": "removed"}
+    for n in (30, 31, 61):
+        more = {**keep, "Cracks/Nodes on cracks": "left"}  # 30 cells: the crack lies on a row of nodes
+        table.add_limit(f"{n} cells: K_II of the flexure", abs(gap(flexure(n, more), FE, "II", K_FLEXURE)), 0.03)
+        table.add_limit(f"{n} cells: K_I of the cantilever", abs(gap(cantilever(n, more), FE, "I", K_CANTILEVER)), 0.03)
+    for part in (0.1, 0.4, 0.6, 0.9):
+        tip = 3 + part / 31
+        run = cantilever(31, {**keep, "Cracks/Segments": f"0,0 ; {tip!r},0"})
+        table.add_limit(f"tip at {part} of a cell: K_I of the cantilever", abs(gap(run, FE, "I", K_CANTILEVER * (1 + (tip - 3) / 3.32))), 0.03)
+    table.show()
+
+
+def ranks():
+    """Two and four processes."""
+    table = Comparison("Numbers of processes")
+    for more in ({"Models": FE}, {"Models": FE, "Cracks/Mesh": "removed"}):
+        one = cantilever(15, more)
+        for n in (2, 4):
+            other = cantilever(15, more, ranks=n)
+            table.add(f"{more}: K_I on {n} processes", gap(other, FE, "I", K_CANTILEVER), gap(one, FE, "I", K_CANTILEVER), absolute=1e-8)
+    table.show()
+
+
+if __name__ == "__main__":
+    {"default": default, "removed": removed, "ranks": ranks}[sys.argv[1]]()
+    finish()
