@@ -161,8 +161,31 @@ namespace PeriDeal
     site.origin = families.neighbors().node_at(image);
     if (site.origin == numbers::invalid_unsigned_int)
       return false;
-    site.volume = parts * families.nodes().volume(site.origin);
-    return true;
+    site.volume        = parts * families.nodes().volume(site.origin);
+    const double share = share_of(index);
+    const double own   = image == index ? families.nodes().volume(site.origin) : 0.;
+    site.volume        = own + share * (site.volume - own);
+    return share > 0. || own > 0.;
+  }
+
+
+  template <int dim>
+  double FictitiousExtension<dim>::share_of(const Index &index) const
+  {
+    const Lattice<dim> &lattice = *families.nodes().lattice();
+    const int           on      = lattice.at_centers ? 0 : 1; // what counts as beyond a side
+    bool                in_part = false;
+    unsigned int        n       = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const int  last = lattice.n_sites[d] - 1;
+        const auto kind = index[d] < on        ? beyond[2 * d] :
+                          index[d] > last - on ? beyond[2 * d + 1] :
+                                                 BeyondSide::nothing;
+        in_part         = in_part || kind == BeyondSide::in_part;
+        n += kind == BeyondSide::in_part || kind == BeyondSide::continued ? 1 : 0;
+      }
+    return !in_part ? 1. : n > 1 ? 0. : 0.5;
   }
 
 

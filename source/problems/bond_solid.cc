@@ -6,10 +6,12 @@
 #include <perideal/analysis/bond_intensities.h>
 #include <perideal/laws/entropy_of_deformation.h>
 #include <perideal/operators/solid/state_operator.h>
+#include <perideal/operators/solid/surface_stiffness.h>
 #include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "diffusion_parts.h"
 #include "solid_fields.h"
@@ -36,7 +38,10 @@ namespace PeriDeal
           node_set = &make_bond_nodes(model, scene);
         }
         Timings::Scope scope(this->timings, "operator");
-        states = std::make_unique<StateOperator<dim>>(*node_set, scene);
+        states                       = std::make_unique<StateOperator<dim>>(*node_set, scene);
+        const SolidBonds<dim> &bonds = states->bonds();
+        if (!completes_at_surfaces(scene))
+          stiffer = surface_stiffness(bonds.families, bonds.laws, bonds.rows, bonds.beyond.get());
       }
 
       std::string name() const override
@@ -250,7 +255,8 @@ namespace PeriDeal
         const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
         const unsigned long long n  = states->bonds().rows.n_uncorrected;
         std::vector<std::string> list;
-        for (const std::string &note : {note_on_cut_sides(scene), note_on_held_rows(scene)})
+        for (const std::string &note :
+             {note_on_cut_sides(scene), note_on_stiff_surfaces(), note_on_held_rows(scene)})
           if (!note.empty())
             list.push_back(note);
         if (dim > 1 && scene.elasticity.model == ElasticModel::bond_based &&
@@ -330,9 +336,26 @@ namespace PeriDeal
         return reader.evaluate(change);
       }
 
+      /** In figures what families that end at surfaces do to the stiffness. */
+      std::string note_on_stiff_surfaces() const
+      {
+        constexpr double tolerable = 0.01;
+        std::string      axes;
+        for (unsigned int d = 0; d < dim; ++d)
+          if (std::abs(stiffer[d]) > tolerable)
+            axes += (axes.empty() ? "" : ", ") + number_text(std::round(1000. * stiffer[d]) / 10.) +
+                    " % along " + std::string(1, "xyz"[d]);
+        if (axes.empty())
+          return {};
+        return "Families of peridynamics that end at surfaces make this body stiffer than its Young's modulus: "
+               "if it is stretched as a whole, by about " +
+               axes + " (mean over its nodes); waves are faster by half of that.";
+      }
+
       const DoFHandler<dim>              &handler;
       Nodes<dim>                         *node_set = nullptr; // of the model
       std::unique_ptr<StateOperator<dim>> states;
+      Tensor<1, dim>                      stiffer; // by families that end, along the axes
     };
   } // namespace
 

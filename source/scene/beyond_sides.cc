@@ -30,12 +30,9 @@ namespace PeriDeal
     }
 
 
-    /**
-     * Families end at free sides: bonds there break as those of their own families, and nodes that
-     * others follow are stiff, so that explicit steps would be short.
-     */
+    /** Explicit steps are taken, which stiff nodes make short. */
     template <int dim>
-    bool ends_at_free_sides(const BodyParameters<dim> &body)
+    bool takes_steps(const BodyParameters<dim> &body)
     {
       return body.material.fracture_energy || body.material.critical_stretch ||
              body.elasticity.solver == ElasticSolver::dynamics;
@@ -178,8 +175,7 @@ namespace PeriDeal
     if (automatic && (!body.domain.has_lattice() || !hindrance_of_fictitious_nodes(body).empty()))
       return beyond;
     const auto &conditions = body.boundary_conditions;
-    if (!automatic || !ends_at_free_sides(body))
-      beyond.fill(BeyondSide::continued);
+    beyond.fill(automatic && takes_steps(body) ? BeyondSide::in_part : BeyondSide::continued);
     const auto set = [&](const types::boundary_id side, const BeyondSide value) {
       if (side < 2 * dim)
         beyond[side] = value;
@@ -197,6 +193,15 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool completes_at_surfaces(const BodyParameters<dim> &body)
+  {
+    return body.domain.has_lattice() && !body.domain.has_extra_layers() &&
+           body.peridynamics.surface_correction == SurfaceCorrection::automatic &&
+           hindrance_of_fictitious_nodes(body).empty();
+  }
+
+
+  template <int dim>
   bool completes_mesh(const BodyParameters<dim> &body)
   {
     return !body.domain.has_lattice() && body.deforms &&
@@ -206,43 +211,32 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side)
-  {
-    if (!ends_at_free_sides(body))
-      return true;
-    const auto &conditions = body.boundary_conditions;
-    for (const auto *const list : {&conditions.displacement, &conditions.traction})
-      for (const VectorCondition &condition : *list)
-        if (conditions.side_of(condition.id) == side)
-          return true;
-    return false;
-  }
-
-
-  template <int dim>
   std::string automatic_correction(const BodyParameters<dim> &body)
   {
     if (const std::string reason = hindrance_of_fictitious_nodes(body); !reason.empty())
       return "none, because " + reason;
     if (completes_mesh(body))
-      return ends_at_free_sides(body) ? "fictitious nodes beyond sides with conditions" :
-                                        "fictitious nodes beyond the whole boundary";
+      return "fictitious nodes beyond the whole boundary";
     const auto               beyond = beyond_sides(body);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)
       if (beyond[side] != BeyondSide::nothing)
         names.push_back(name_of_side(side, true));
-    return names.empty() ? "none" : "fictitious nodes beyond " + join_names(names);
+    const std::string where = names.empty() ? "" : "fictitious nodes beyond " + join_names(names);
+    const std::string rest  = completes_at_surfaces(body) ? "weights of bonds elsewhere" : "";
+    return where.empty() && rest.empty() ? "none" :
+           where.empty() || rest.empty() ? where + rest :
+                                           where + ", " + rest;
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template std::string                     note_on_held_rows(const BodyParameters<dim> &body);  \
-  template std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);       \
-  template bool                            completes_mesh(const BodyParameters<dim> &body);     \
-  template bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side); \
-  template std::string automatic_correction(const BodyParameters<dim> &body);                   \
-  template std::string note_on_cut_sides(const BodyParameters<dim> &body);
+#define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template bool                            completes_at_surfaces(const BodyParameters<dim> &);    \
+  template std::string                     note_on_held_rows(const BodyParameters<dim> &body);    \
+  template std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);         \
+  template bool                            completes_mesh(const BodyParameters<dim> &body);       \
+  template std::string                     automatic_correction(const BodyParameters<dim> &body); \
+  template std::string                     note_on_cut_sides(const BodyParameters<dim> &body);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

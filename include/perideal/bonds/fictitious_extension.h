@@ -86,6 +86,9 @@ namespace PeriDeal
     /** What a place along an axis follows from, and the site in the body that it is an image of. */
     bool resolve(const unsigned int axis, int k, std::vector<Step> &steps, int &inner) const;
 
+    /** How much of what lies at a place beyond sides counts; see BeyondSide::in_part. */
+    double share_of(const Index &index) const;
+
     const Families<dim>            &families;
     std::array<BeyondSide, 2 * dim> beyond;
   };

@@ -13,20 +13,31 @@ namespace PeriDeal
   /** How the families of an elastic body go on beyond a flat side of a lattice. */
   enum class BeyondSide
   {
-    nothing,  // they end there
-    mirrored, // as in the mirror image of the body, at planes of symmetry
-    continued // by a linear continuation of its displacement
+    nothing,   // they end there
+    mirrored,  // as in the mirror image of the body, at planes of symmetry
+    continued, // by a linear continuation of its displacement
+    in_part    // by half of that, and not where another side is continued, too
   };
 
 
   /**
    * Of the sides left, right, bottom, top, back, front. With `Surface correction = fictitious
    * nodes` all go on. With `auto` they do where the scene allows, for `Models = peridynamics`; in
-   * motion, and where bonds may break those with conditions alone, since bonds at free sides break
-   * as those of their own families. Not collective.
+   * motion, and where bonds may break, those without conditions do in part: the nodes that
+   * fictitious ones follow are stiff, at corners most, and explicit steps would be short. Not
+   * collective.
    */
   template <int dim>
   std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);
+
+
+  /**
+   * Families of an elastic body on a lattice that end elsewhere, at voids and in motion at free
+   * sides, are completed by their own bonds (FamilyCompletion), with `Surface correction = auto`.
+   * Not collective.
+   */
+  template <int dim>
+  bool completes_at_surfaces(const BodyParameters<dim> &body);
 
 
   /**
@@ -35,11 +46,6 @@ namespace PeriDeal
    */
   template <int dim>
   bool completes_mesh(const BodyParameters<dim> &body);
-
-
-  /** Then: beyond this one, of those that are no planes of symmetry. Not collective. */
-  template <int dim>
-  bool goes_on_beyond(const BodyParameters<dim> &body, const dealii::types::boundary_id side);
 
 
   /**

@@ -5,35 +5,79 @@
 
 #include <perideal/bonds/point_bins.h>
 #include <perideal/mesh/lattice_sites.h>
+#include <perideal/operators/solid/family_completion.h>
 #include <perideal/operators/solid/fictitious_bonds.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <unordered_map>
 
 namespace PeriDeal
 {
   using namespace dealii;
 
   template <int dim>
+  struct FictitiousBonds<dim>::Search
+  {
+    /** What lies at the site of a member, as a node sees it. */
+    struct Member
+    {
+      unsigned int node;           // to which it has a bond, or none
+      double       inside, beyond; // volumes of this, and beyond the sides
+    };
+
+    std::unordered_map<std::size_t, unsigned int>           image_at; // by the key of its site
+    std::unordered_map<unsigned int, unsigned int>          image_of; // by the node itself
+    std::vector<std::size_t>                                parted;   // bonds
+    std::optional<FamilyCompletion<dim>>                    completion;
+    std::vector<Member>                                     family; // of the node at work
+    std::vector<double>                                     volumes;
+    const FictitiousExtension<dim>                         *extension = nullptr;
+    Site                                                    site;
+    std::vector<UnitBond<dim>>                              units;
+    std::map<std::pair<unsigned int, double>, unsigned int> number_of; // of units with a factor
+    std::vector<unsigned int>                               unit_of;   // each bond, or gone
+
+    static constexpr unsigned int gone = static_cast<unsigned int>(-1);
+  };
+
+
+  template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
                                         const std::array<BeyondSide, 2 * dim> &beyond,
+                                        const bool                             completes,
                                         const bool                             may_pack)
     : families(families)
     , fictitious(families.nodes())
+    , packs(may_pack)
   {
-    const Nodes<dim>              &nodes = families.nodes();
+    const Nodes<dim>              &nodes   = families.nodes();
+    const Lattice<dim>            &lattice = *nodes.lattice();
     const FictitiousExtension<dim> extension(families, beyond);
-    int                            reach = 0;
+    Search                         search;
+    search.extension  = &extension;
+    search.units      = unit_bonds(families);
+    int         reach = 0;
+    std::size_t sites = 1;
     for (const FamilyMember<dim> &member : families.weights().members())
       for (unsigned int d = 0; d < dim; ++d)
         reach = std::max(reach, member.offset[d]);
-    if (may_pack)
-      units = unit_bonds(families);
-    packs = !units.empty() && units.size() < BondCode::gone;
-    find_bonds([&](const unsigned int i, Search &search) {
-      if (extension.distance(nodes.lattice()->index(nodes.position(i))) <= reach)
-        find_bonds_of(i, extension, search);
+    for (unsigned int d = 0; d < dim; ++d)
+      sites *= lattice.n_sites[d];
+    if (completes)
+      search.completion.emplace(families.weights(), lattice);
+    const bool all = completes && nodes.n_global() < sites;
+    find_bonds(search, [&](const unsigned int i, Search &of_all) {
+      const auto site = lattice.index(nodes.position(i));
+      bool       near = all || extension.distance(site) <= reach;
+      for (unsigned int d = 0; d < dim && completes; ++d)
+        near = near || std::min(site[d], lattice.n_sites[d] - 1 - site[d]) <= reach;
+      if (near)
+        find_bonds_of(i, of_all);
     });
+    pack(search);
   }
 
 
@@ -47,17 +91,19 @@ namespace PeriDeal
     for (unsigned int g = 0; g < beyond.size(); ++g)
       bins.add(beyond[g].place, g);
     std::vector<unsigned int> number_of(beyond.size(), numbers::invalid_unsigned_int);
-    find_bonds([&](const unsigned int i, Search &search) {
-      find_bonds_of(i, beyond, bins, number_of, search);
+    Search                    search;
+    find_bonds(search, [&](const unsigned int i, Search &of_all) {
+      find_bonds_of(i, beyond, bins, number_of, of_all);
     });
+    moments.shrink_to_fit();
+    springs.shrink_to_fit();
   }
 
 
   template <int dim>
   template <typename Find>
-  void FictitiousBonds<dim>::find_bonds(const Find &find)
+  void FictitiousBonds<dim>::find_bonds(Search &search, const Find &find)
   {
-    Search search;
     starts.assign(1, 0);
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
       {
@@ -74,10 +120,35 @@ namespace PeriDeal
     for (auto *numbers : {&image_of_bond, &list})
       numbers->shrink_to_fit();
     starts.shrink_to_fit();
-    codes.shrink_to_fit();
-    moments.shrink_to_fit();
-    springs.shrink_to_fit();
     fictitious.make_room();
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::pack(Search &search)
+  {
+    packs = packs && search.units.size() < BondCode::gone;
+    if (packs)
+      {
+        codes.reserve(search.unit_of.size());
+        for (const unsigned int unit : search.unit_of)
+          codes.push_back(
+            static_cast<BondCode::Code>(unit == Search::gone ? BondCode::gone : unit));
+        units = std::move(search.units);
+        return;
+      }
+    moments.reserve(search.unit_of.size());
+    springs.reserve(search.unit_of.size());
+    for (std::size_t place = 0; place < list.size(); ++place)
+      for (std::size_t k = starts[place]; k < starts[place + 1]; ++k)
+        {
+          const bool           none = search.unit_of[k] == Search::gone;
+          const UnitBond<dim> &unit = search.units[none ? 0 : search.unit_of[k]];
+          const double         w =
+            none ? 0. : families.nodes().volume(list[place]) * fictitious[image_of_bond[k]].volume;
+          moments.push_back(w * unit.moment);
+          springs.push_back(w * unit.weight);
+        }
   }
 
 
@@ -86,20 +157,42 @@ namespace PeriDeal
                                       const Tensor<1, dim> &xi,
                                       const double          weight,
                                       const bool            cut,
-                                      const unsigned int    member,
                                       Search               &search)
   {
     const double w = cut ? 0. : weight;
     if (cut)
       search.parted.push_back(image_of_bond.size());
     image_of_bond.push_back(image);
-    if (packs)
-      {
-        codes.push_back(static_cast<BondCode::Code>(cut ? BondCode::gone : member));
-        return;
-      }
     moments.push_back(w * xi);
     springs.push_back(w * xi.norm_square());
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::add_lattice_bond(const unsigned int image,
+                                              const unsigned int member,
+                                              const double       factor,
+                                              const bool         cut,
+                                              Search            &search)
+  {
+    if (cut)
+      search.parted.push_back(image_of_bond.size());
+    image_of_bond.push_back(image);
+    unsigned int unit = cut ? Search::gone : member;
+    if (!cut && factor != 1.)
+      {
+        const auto [entry, is_new] =
+          search.number_of.try_emplace({member, factor}, search.units.size());
+        unit = entry->second;
+        if (is_new)
+          {
+            UnitBond<dim> more = search.units[member];
+            more.moment *= factor;
+            more.weight *= factor;
+            search.units.push_back(more);
+          }
+      }
+    search.unit_of.push_back(unit);
   }
 
 
@@ -152,53 +245,121 @@ namespace PeriDeal
             number_of[g]  = fictitious.add(fields, image.terms, &image.twice_planes);
           }
         const double weight = families.weights().of_length(xi.norm());
-        add_bond(number_of[g], xi, nodes.volume(i) * image.volume * weight, cut, 0, search);
+        add_bond(number_of[g], xi, nodes.volume(i) * image.volume * weight, cut, search);
       }
   }
 
 
   template <int dim>
-  void FictitiousBonds<dim>::find_bonds_of(const unsigned int              i,
-                                           const FictitiousExtension<dim> &extension,
-                                           Search                         &search)
+  void FictitiousBonds<dim>::find_site(const unsigned int i,
+                                       const unsigned int member,
+                                       const bool         near_void,
+                                       Search            &search) const
+  {
+    const Nodes<dim>   &nodes   = families.nodes();
+    const Lattice<dim> &lattice = *nodes.lattice();
+    const Index         index =
+      lattice.index(nodes.position(i)) + families.weights().members()[member].offset;
+    const unsigned int       real   = families.neighbors().node_at(index);
+    typename Search::Member &result = search.family[member];
+    result                          = {real, 0., 0.};
+    if (real != numbers::invalid_unsigned_int)
+      result.inside = nodes.volume(real);
+    if (!search.extension->is_inside(index) && search.extension->find(index, search.site))
+      result.beyond = search.site.volume - result.inside;
+    if (result.beyond <= 1e-9 * search.site.volume ||
+        (near_void && families.cracks().leaves_body(i, index)))
+      result.beyond = 0.;
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::find_bonds_of(const unsigned int i, Search &search)
   {
     const Nodes<dim>   &nodes      = families.nodes();
     const Lattice<dim> &lattice    = *nodes.lattice();
-    const Index         center     = lattice.index(nodes.position(i));
     const bool          near_crack = families.near_crack(i);
-    Site                site;
-    const auto         &members = families.weights().members();
+    const auto         &members    = families.weights().members();
+    search.family.resize(members.size());
+    for (unsigned int m = 0; m < members.size(); ++m)
+      find_site(i, m, near_crack, search);
+    const std::vector<double> *factors = nullptr;
+    if (search.completion)
+      {
+        const double whole = lattice.cell_volume();
+        search.volumes.resize(members.size());
+        bool any_missing = false;
+        for (unsigned int m = 0; m < members.size(); ++m)
+          {
+            double volume = search.family[m].inside + search.family[m].beyond;
+            if (std::abs(volume - whole) < 1e-9 * whole)
+              volume = whole;
+            any_missing       = any_missing || volume < whole;
+            search.volumes[m] = volume;
+          }
+        for (unsigned int m = 0; m < members.size() && any_missing && near_crack; ++m)
+          if (const auto &member = search.family[m];
+              member.inside > 0. && families.cracks().leaves_body(i, member.node))
+            search.volumes[m] = member.beyond;
+        if (any_missing)
+          factors = &search.completion->factors(search.volumes);
+      }
     for (unsigned int m = 0; m < members.size(); ++m)
       {
-        const FamilyMember<dim> &member = members[m];
-        const Index              index  = center + member.offset;
-        if (extension.is_inside(index) || !extension.find(index, site))
-          continue;
-        const unsigned int real   = families.neighbors().node_at(index);
-        const double       inside = real == numbers::invalid_unsigned_int ? 0. : nodes.volume(real);
-        const double       volume = site.volume - inside;
-        if (volume <= 1e-9 * site.volume)
-          continue;
-        // What a crack cuts of a mirror image counts in the damage.
-        const auto twice_planes = [&](const Term &term) {
-          return Point<dim>(lattice.position(index) + (nodes.position(term.node) - Point<dim>()));
-        };
-        if (near_crack && families.cracks().leaves_body(i, index))
-          continue;
-        const bool cut = near_crack && is_cut(i, site.terms, twice_planes);
-        if (cut && !(site.terms.size() == 1 &&
-                     is_separated(i, site.terms[0], twice_planes(site.terms[0]))))
-          continue;
-        Tensor<1, dim> xi;
-        for (unsigned int d = 0; d < dim; ++d)
-          xi[d] = member.offset[d] * lattice.spacing[d];
-        add_bond(image_at(index, site, volume, search),
-                 xi,
-                 nodes.volume(i) * volume * member.weight,
-                 cut,
-                 m,
-                 search);
+        const auto   member = search.family[m];
+        const double more   = factors != nullptr ? (*factors)[m] : 0.;
+        if (member.beyond > 0.)
+          add_bond_beyond(i, m, 1. + more, search);
+        if (more > 0. && member.inside > 0. && search.volumes[m] > 0. &&
+            !(near_crack && families.cracks().cuts(i, member.node)))
+          add_lattice_bond(image_of(member.node, search), m, more, false, search);
       }
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::add_bond_beyond(const unsigned int i,
+                                             const unsigned int member,
+                                             const double       factor,
+                                             Search            &search)
+  {
+    const Nodes<dim>   &nodes   = families.nodes();
+    const Lattice<dim> &lattice = *nodes.lattice();
+    const Site         &site    = search.site;
+    const Index         index =
+      lattice.index(nodes.position(i)) + families.weights().members()[member].offset;
+    search.extension->find(index, search.site);
+    // What a crack cuts of a mirror image counts in the damage.
+    const auto twice_planes = [&](const Term &term) {
+      return Point<dim>(lattice.position(index) + (nodes.position(term.node) - Point<dim>()));
+    };
+    const bool cut = families.near_crack(i) && is_cut(i, site.terms, twice_planes);
+    if (cut &&
+        !(site.terms.size() == 1 && is_separated(i, site.terms[0], twice_planes(site.terms[0]))))
+      return;
+    add_lattice_bond(image_at(index, site, search.family[member].beyond, search),
+                     member,
+                     factor,
+                     cut,
+                     search);
+  }
+
+
+  template <int dim>
+  unsigned int FictitiousBonds<dim>::image_of(const unsigned int node, Search &search)
+  {
+    const auto [entry, is_new] = search.image_of.try_emplace(node, fictitious.size());
+    if (!is_new)
+      return entry->second;
+    const Nodes<dim>                     &nodes = families.nodes();
+    typename FictitiousImages<dim>::Image fields{};
+    fields.planes.fill(numbers::invalid_boundary_id);
+    fields.place   = nodes.position(node);
+    fields.volume  = nodes.volume(node);
+    fields.origin  = node;
+    fields.site    = nodes.lattice()->index(fields.place);
+    fields.is_real = true;
+    return fictitious.add(fields, {Term{node, 0, 1.}});
   }
 
 
@@ -229,174 +390,13 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  bool FictitiousBonds<dim>::is_separated(const unsigned int i,
-                                          const Term        &term,
-                                          const Point<dim>  &twice_planes) const
-  {
-    // Instead of the cracks mirror the bond, about each set of planes of symmetry that it passes.
-    const Nodes<dim> &nodes = families.nodes();
-    for (unsigned int image = 0; image < (1u << dim); ++image)
-      {
-        if ((image & ~term.mirrored) != 0)
-          continue;
-        Point<dim> a = nodes.crack_point(i), b = nodes.crack_point(term.node);
-        for (unsigned int d = 0; d < dim; ++d)
-          if ((image >> d) & 1)
-            a[d] = twice_planes[d] - a[d];
-          else if ((term.mirrored >> d) & 1)
-            b[d] = twice_planes[d] - b[d];
-        if (families.cracks().separate(a, b))
-          return true;
-      }
-    return false;
-  }
-
-
-  template <int dim>
-  bool FictitiousBonds<dim>::is_cut(
-    const unsigned int                             i,
-    const std::vector<Term>                       &of_image,
-    const std::function<Point<dim>(const Term &)> &twice_planes) const
-  {
-    for (const Term &term : of_image)
-      {
-        bool cut = false;
-        if (term.mirrored != 0 || !families.nodes().lattice())
-          cut = is_separated(i, term, twice_planes(term)); // beyond the reach, too
-        else if (term.node != i)
-          cut = families.cracks().cuts(i, term.node);
-        if (cut)
-          return true;
-      }
-    return false;
-  }
-
-
-  template <int dim>
-  void FictitiousBonds<dim>::part(const unsigned int node, const double t)
-  {
-    std::vector<Term> terms;
-    for_each_of(node, [&](const Bond &bond) {
-      if (!bond.whole)
-        return;
-      terms.clear();
-      fictitious.for_each_term(bond.image, [&](const Term &term) { terms.push_back(term); });
-      const bool cut = is_cut(node, terms, [&](const Term &term) {
-        if (!families.nodes().lattice())
-          return fictitious.twice_planes(bond.image);
-        return Point<dim>(fictitious[bond.image].place +
-                          (families.nodes().position(term.node) - Point<dim>()));
-      });
-      if (cut)
-        break_bond(bond.number, BondState::parted, t);
-    });
-  }
-
-
-  template <int dim>
-  bool FictitiousBonds<dim>::is_parted(const unsigned int node) const
-  {
-    bool any = false;
-    for_each_of(node, [&](const Bond &bond) {
-      // What was cut from the start has never had a weight.
-      any = any || (state.is_parted(bond.number) && squares[bond.number] > 0.);
-    });
-    return any;
-  }
-
-
-  template <int dim>
-  double FictitiousBonds<dim>::weight_left(const unsigned int node) const
-  {
-    double sum = 0.;
-    for_each_of(node, [&](const Bond &bond) {
-      if (!state.is_parted(bond.number))
-        sum += squares[bond.number] / families.nodes().volume(node);
-    });
-    return sum;
-  }
-
-
-  template <int dim>
-  void FictitiousBonds<dim>::renew_springs(const unsigned int node, const NodeLaws<dim> &of_nodes)
-  {
-    for_each_of(node, [&](const Bond &bond) {
-      if (bond.whole)
-        springs[bond.number] = of_nodes.stiffness(node) / squares[bond.number];
-    });
-  }
-
-
-  template <int dim>
-  void FictitiousBonds<dim>::add_weights(Vector &q) const
-  {
-    for_each([&](const Bond &bond) {
-      q.local_element(bond.node) += bond.spring / families.nodes().volume(bond.node); // W x^2
-    });
-  }
-
-
-  template <int dim>
-  void FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &of_nodes, const bool full)
-  {
-    laws = &of_nodes;
-    if (packs)
-      return;
-    if (families.cracks().history().changes_ever())
-      squares = springs;
-    for_each([&](const Bond &bond) {
-      springs[bond.number] = bond.whole ? laws->stiffness(bond.node) / bond.spring : 0.;
-    });
-    if (!full)
-      return;
-    across.resize(springs.size(), 0.);
-    for (const Tensor<1, dim> &p : moments)
-      lengths.push_back(p.norm());
-  }
-
-
-  template <int dim>
-  void FictitiousBonds<dim>::set_thermal_strains(const ThermalStrains &strain)
-  {
-    strains.resize(image_of_bond.size());
-    for_each([&](const Bond &bond) {
-      // What a temperature linear in space does to a free body is no linear displacement. The bond
-      // has no force then if its extension is that of what the image follows from, at r_k from the
-      // node: e = sum f_k (s_k M.r_k - r_k^2/2 ds/dM), the mean of both ends for a mirror image.
-      const Point<dim>     at  = families.nodes().position(bond.node);
-      const Tensor<1, dim> xi  = bond_vector(bond);
-      double               own = strain[bond.node], other = 0., mean = 0., half = 0., rest = 1.;
-      fictitious.for_each_term(bond.image, [&](const Term &term) {
-        Tensor<1, dim> r = families.nodes().position(term.node) - at;
-        for (unsigned int d = 0; d < dim; ++d)
-          r[d] = (term.mirrored >> d) & 1 ? xi[d] : r[d];
-        const double f = term.factor / xi.norm_square(), s = strain[term.node];
-        other += term.factor * s;
-        mean += f * s * (r * xi);
-        half += 0.5 * f * r.norm_square();
-        rest -= f * (r * xi);
-      });
-      // A body narrower than a family mirrors and continues along one axis: no such sum.
-      mean -= half * (other - own);
-      strains[bond.number] = std::abs(rest) > 1e-6 ? 0.5 * (own + other) : mean;
-    });
-  }
-
-
-#define PERIDEAL_INSTANTIATE(dim)                                                                 \
-  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                           \
-                                                 const std::array<BeyondSide, 2 * dim> &,         \
-                                                 const bool);                                     \
-  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                           \
-                                                 const std::vector<BoundaryImage<dim>> &);        \
-  template void   FictitiousBonds<dim>::part(const unsigned int, const double);                   \
-  template bool   FictitiousBonds<dim>::is_parted(const unsigned int) const;                      \
-  template double FictitiousBonds<dim>::weight_left(const unsigned int) const;                    \
-  template void   FictitiousBonds<dim>::renew_springs(const unsigned int, const NodeLaws<dim> &); \
-  template void   FictitiousBonds<dim>::add_weights(Vector &) const;                              \
-  template void   FictitiousBonds<dim>::find_springs(const NodeLaws<dim> &, const bool);          \
-  template void   FictitiousBonds<dim>::set_thermal_strains(const ThermalStrains &);
+#define PERIDEAL_INSTANTIATE(dim)                                                         \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
+                                                 const std::array<BeyondSide, 2 * dim> &, \
+                                                 const bool,                              \
+                                                 const bool);                             \
+  template FictitiousBonds<dim>::FictitiousBonds(const Families<dim> &,                   \
+                                                 const std::vector<BoundaryImage<dim>> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

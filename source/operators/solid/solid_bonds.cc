@@ -26,27 +26,27 @@ namespace PeriDeal
     {
       if (completes_mesh(body))
         {
-          const auto goes_on = [&](const types::boundary_id side) {
-            return goes_on_beyond(body, side);
-          };
-          auto beyond = std::make_unique<FictitiousBonds<dim>>(
-            families,
-            boundary_images(families.nodes(),
-                            body.boundary_conditions.symmetry,
-                            goes_on,
-                            families.weights().reach()));
+          auto beyond =
+            std::make_unique<FictitiousBonds<dim>>(families,
+                                                   boundary_images(
+                                                     families.nodes(),
+                                                     body.boundary_conditions.symmetry,
+                                                     [](const types::boundary_id) { return true; },
+                                                     families.weights().reach()));
           beyond->add_weights(weighted);
           return beyond;
         }
-      const auto sides = beyond_sides(body);
+      const auto sides     = beyond_sides(body);
+      const bool completes = completes_at_surfaces(body);
       if (!families.neighbors().has_unique_sites() ||
-          std::all_of(sides.begin(), sides.end(), [](const auto side) {
+          (!completes && std::all_of(sides.begin(), sides.end(), [](const auto side) {
             return side == BeyondSide::nothing;
-          }))
+          })))
         return nullptr;
       auto beyond = std::make_unique<FictitiousBonds<dim>>(
         families,
         sides,
+        completes,
         !body.elasticity.has_full_kinematics() && !families.cracks().history().changes_ever());
       beyond->add_weights(weighted);
       // The lattice knows what is complete to the last bit.

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -52,11 +51,13 @@ namespace PeriDeal
 
     /**
      * Families have to outlive this object, with the cracks that they have now. Not collective.
-     * @param may_pack store which of their family bonds are: with linear kinematics, where cracks
-     *                 do not grow
+     * @param completes what ends at other sides and at voids is made up for (FamilyCompletion)
+     * @param may_pack  store which of their family bonds are: with linear kinematics, where cracks
+     *                  do not grow
      */
     FictitiousBonds(const Families<dim>                   &families,
                     const std::array<BeyondSide, 2 * dim> &beyond,
+                    const bool                             completes,
                     const bool                             may_pack);
 
     /** The same of a mesh. Not collective. */
@@ -238,29 +239,26 @@ namespace PeriDeal
     using Index = typename FictitiousExtension<dim>::Index;
     using Term  = typename Site::Term;
 
-    /** While bonds are found. */
-    struct Search
-    {
-      std::unordered_map<std::size_t, unsigned int> image_at; // by the key of its site
-      std::vector<std::size_t>                      parted;   // bonds
-    };
+    struct Search; // while bonds are found
 
-    void find_bonds_of(const unsigned int              i,
-                       const FictitiousExtension<dim> &extension,
-                       Search                         &search);
+    void find_bonds_of(const unsigned int i, Search &search);
+    void find_site(const unsigned int i, unsigned int member, bool near_void, Search &) const;
     void find_bonds_of(const unsigned int                     i,
                        const std::vector<BoundaryImage<dim>> &beyond,
                        const PointBins<dim>                  &bins,
                        std::vector<unsigned int>             &number_of,
                        Search                                &search);
     template <typename Find>
-    void         find_bonds(const Find &find);
+    void         find_bonds(Search &search, const Find &find);
+    void         pack(Search &search);
     void         add_bond(const unsigned int            image,
                           const dealii::Tensor<1, dim> &xi,
                           const double                  weight,
                           const bool                    cut,
-                          const unsigned int            member, // where they are packed
                           Search                       &search);
+    void         add_lattice_bond(const unsigned int, unsigned int, double, bool cut, Search &);
+    void         add_bond_beyond(const unsigned int i, unsigned int, double factor, Search &);
+    unsigned int image_of(const unsigned int node, Search &search); // that is the node itself
     unsigned int image_at(const Index &index,
                           const Site  &site,
                           const double volume,

@@ -12,7 +12,8 @@
 namespace PeriDeal
 {
   /**
-   * The fictitious nodes beyond the sides of a solid to which nodes of the body have bonds. The
+   * The fictitious nodes beyond the sides of a solid to which nodes of the body have bonds, and those
+   * nodes of the body that count more in the families of others (FamilyCompletion). The
    * displacement of each, u_g = P u, is linear in that of nodes of the body; the force on it is
    * passed on to them through P^T.
    *
@@ -29,9 +30,10 @@ namespace PeriDeal
     {
       dealii::Point<dim>                          place;
       double                                      volume;
-      std::array<dealii::types::boundary_id, dim> planes; // that it may lie beyond
-      unsigned int                                origin; // the node that it is an image of
-      Index                                       site;   // on a lattice
+      std::array<dealii::types::boundary_id, dim> planes;  // that it may lie beyond
+      unsigned int                                origin;  // the node that it is an image of
+      Index                                       site;    // on a lattice
+      bool                                        is_real; // a node of the body itself
     };
 
     explicit FictitiousImages(const Nodes<dim> &nodes);
@@ -72,7 +74,7 @@ namespace PeriDeal
     /** The image mirrors one node, and is continued beyond no side. */
     bool is_mirrored_alone(const unsigned int image) const
     {
-      return starts[image + 1] - starts[image] == 1;
+      return starts[image + 1] - starts[image] == 1 && !images[image].is_real;
     }
 
     bool any_mirrored_alone() const;

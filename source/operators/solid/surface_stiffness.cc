@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/operators/solid/surface_stiffness.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Sums of w x^2 n_a^2 n_b^2 over a family, n = xi/x. */
+    template <int dim>
+    struct EvenMoments
+    {
+      void add(const Tensor<1, dim> &xi, const double weight) // w x^2
+      {
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = 0; b < dim; ++b)
+            sums[a][b] += weight * xi[a] * xi[a] * xi[b] * xi[b] / square(xi.norm_square());
+      }
+
+      /** What strains along the axes store, twice, as a quadratic form. */
+      Tensor<2, dim> energy(const StateLaw &law) const
+      {
+        double         q = 0.;
+        Tensor<1, dim> theta;
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = 0; b < dim; ++b)
+            {
+              q += sums[a][b];
+              theta[a] += sums[a][b];
+            }
+        theta *= law.dilatation / q;
+        return law.volumetric / law.dilatation * outer_product(theta, theta) +
+               law.extension / q * sums;
+      }
+
+      static double square(const double x)
+      {
+        return x * x;
+      }
+
+      Tensor<2, dim> sums;
+    };
+  } // namespace
+
+
+  template <int dim>
+  Tensor<1, dim> surface_stiffness(const Families<dim>        &families,
+                                   const NodeLaws<dim>        &laws,
+                                   const SolidRows<dim>       &rows,
+                                   const FictitiousBonds<dim> *beyond)
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    EvenMoments<dim>  complete;
+    if (nodes.lattice())
+      for (const FamilyMember<dim> &member : families.weights().members())
+        {
+          Tensor<1, dim> xi;
+          for (unsigned int d = 0; d < dim; ++d)
+            xi[d] = member.offset[d] * nodes.lattice()->spacing[d];
+          complete.add(xi, member.weight * member.r * member.r);
+        }
+    else
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = 0; b < dim; ++b)
+          complete.sums[a][b] = (a == b ? 3. : 1.) / (dim * (dim + 2.));
+    Tensor<2, dim> found, expected;
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        EvenMoments<dim> own;
+        const auto       add = [&](const Tensor<1, dim> &xi, const Tensor<1, dim> &moment) {
+          own.add(xi, moment * xi);
+        };
+        rows.for_each(i, [&](const auto &bond) {
+          add(families.neighbors().bond_vector(i, bond.neighbor), bond.moment);
+        });
+        if (beyond != nullptr)
+          beyond->for_each_of(i, [&](const auto &bond) {
+            add(beyond->bond_vector(bond), bond.moment);
+          });
+        StateLaw law = laws[i];
+        if (!laws.volumetric)
+          law.volumetric = 0.;
+        found += nodes.volume(i) * own.energy(law);
+        expected += nodes.volume(i) * complete.energy(law);
+      }
+    found    = Utilities::MPI::sum(found, nodes.communicator());
+    expected = Utilities::MPI::sum(expected, nodes.communicator());
+    Tensor<1, dim>       more;
+    const Tensor<2, dim> soft = invert(found), reference = invert(expected);
+    for (unsigned int d = 0; d < dim; ++d)
+      more[d] = reference[d][d] / soft[d][d] - 1.;
+    return more;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                   \
+  template Tensor<1, dim> surface_stiffness(const Families<dim> &,  \
+                                            const NodeLaws<dim> &,  \
+                                            const SolidRows<dim> &, \
+                                            const FictitiousBonds<dim> *);
+  PERIDEAL_INSTANTIATE(1)
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
+} // namespace PeriDeal
