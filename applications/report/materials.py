@@ -79,6 +79,8 @@ def entries_of(run):
     if run.words.elastic:
         return ELASTIC
     found = DIFFUSING.get(run.get("physics", default="heat"), DIFFUSING["heat"])
+    if run.scene_entry("Material", "Diffusivity"):  # conductivity and storage follow from it
+        return "Diffusivity", "Saturated concentration"
     return tuple(e for e in found if e not in ("Density", "Heat capacity")) if run.get("steady", default=False) else found
 
 
@@ -110,7 +112,7 @@ def material_table(run):
     """What each phase is made of; empty where nothing is given."""
     entries = entries_of(run)
     rows = materials(run, entries)
-    decisive = MODULI if run.words.elastic else ("Conductivity",)
+    decisive = MODULI if run.words.elastic else entries[:1]
     if not any(values.get(m) for _, _, values in rows for m in decisive):
         return ""
     columns = [entries_as_cells(values, entries) for _, _, values in rows]

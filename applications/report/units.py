@@ -113,7 +113,8 @@ class Units:
                     "Thermal expansion": degree and f"1/{degree}",
                     "Fracture energy": {"N/m": "J/m²", "kN/m": "kJ/m²"}.get(self.toughness, self.toughness)}.get(entry, "")
         if self.physics == "moisture":
-            return {"Conductivity": over(length and f"{length}²", time),
+            diffusivity = over(length and f"{length}²", time)
+            return {"Conductivity": diffusivity, "Diffusivity": diffusivity,
                     "Saturated concentration": over(self.named.get("mass", ""), volume)}.get(entry, "")
         field = self.named.get("field", "")
         field = {"C": "K", "degC": "K", "F": "°F"}.get(field, field)

@@ -6,6 +6,8 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
 
 #include <perideal/analysis/decay_rate.h>
 #include <perideal/base/place_text.h>
@@ -62,6 +64,68 @@ namespace PeriDeal
                       std::count(conditions.symmetry.begin(), conditions.symmetry.end(), side) == 0;
         }
       return cut;
+    }
+  } // namespace
+
+
+  namespace
+  {
+    /**
+     * How many spacings longer (or shorter) a body seems between two opposite sides with given
+     * values, which the outermost rows of nodes have: by a chain of rows.
+     */
+    template <int dim>
+    double extra_length(const std::vector<FamilyMember<dim>> &family,
+                        const unsigned int                    axis,
+                        const unsigned int                    n_rows,
+                        const double                          first_row,
+                        const bool                            at_centers)
+    {
+      int reach = 0; // of a member
+      for (const FamilyMember<dim> &member : family)
+        reach = std::max(reach, member.offset[axis]);
+      const int           n = std::min<int>(n_rows, 12 * reach + 2);
+      std::vector<double> along(reach + 1, 0.); // conductance between rows, relative
+      double              whole = 0.;
+      for (const FamilyMember<dim> &member : family)
+        if (const int step = member.offset[axis]; step > 0)
+          {
+            along[step] += member.weight;
+            whole += member.weight * step * step;
+          }
+      const auto volume = [&](const int row) { return row == 0 || row == n - 1 ? first_row : 1.; };
+      FullMatrix<double>     matrix(n - 2, n - 2);
+      dealii::Vector<double> right(n - 2), values(n - 2);
+      const auto             conductance = [&](const int a, const int b) {
+        const int step = std::abs(a - b);
+        return step == 0 || step > reach ? 0. : along[step] / whole * volume(a) * volume(b);
+      };
+      for (int a = 1; a < n - 1; ++a)
+        for (int b = 0; b < n; ++b)
+          {
+            matrix(a - 1, a - 1) += conductance(a, b);
+            if (b > 0 && b < n - 1 && a != b)
+              matrix(a - 1, b - 1) -= conductance(a, b);
+            if (b == n - 1)
+              right(a - 1) += conductance(a, b);
+          }
+      matrix.gauss_jordan();
+      matrix.vmult(values, right);
+      double flow = conductance(0, n - 1);
+      for (int a = 1; a < n - 1; ++a)
+        flow += conductance(0, a) * values(a - 1);
+      return 1. / flow - (at_centers ? n : n - 1);
+    }
+
+
+    /** Of the two sides across a direction those with a given value. */
+    template <int dim>
+    unsigned int n_given(const Scene<dim> &scene, const unsigned int axis)
+    {
+      const auto &given = scene.boundary_conditions.dirichlet;
+      return std::count_if(given.begin(), given.end(), [&](const auto &value) {
+        return value.id < 2 * dim && value.id / 2 == axis;
+      });
     }
   } // namespace
 
@@ -268,37 +332,82 @@ namespace PeriDeal
   std::string note_on_cut_families(const Scene<dim> &scene, const KernelWeights<dim> &weights)
   {
     const Peridynamics &p = scene.peridynamics;
-    if (dim == 1 || scene.domain.shape != Shape::box || weights.members().empty() ||
+    if (!scene.domain.has_lattice() || weights.members().empty() ||
         p.surface_correction == SurfaceCorrection::energy)
       return {};
-    const auto   cut       = sides_that_cut(scene);
-    const bool   partial   = p.nodal_volume == NodalVolume::partial;
-    const double first_row = scene.domain.has_nodes_at_centers() || !partial ? 1. : 0.5;
-    double       most = 0., width = 0.;
-    unsigned int axis = 0;
+    const auto cut         = sides_that_cut(scene);
+    const bool partial     = p.nodal_volume == NodalVolume::partial,
+               at_centers  = scene.domain.has_nodes_at_centers(),
+               of_itself   = p.text("Boundary treatment") == "auto";
+    const double first_row = at_centers || !partial ? 1. : 0.5;
+    double       most = 0., width = 0., longest = 0., length = 0.;
+    unsigned int axis = 0, along = 0;
     for (unsigned int d = 0; d < dim; ++d)
-      if (const unsigned int n = cut[2 * d] + cut[2 * d + 1]; n > 0)
-        {
-          const double one   = missing_width<dim>(weights.members(), d, first_row);
-          const double share = n * one / scene.domain.cells[d];
-          if (share > most)
-            {
-              most  = share;
-              width = one * scene.domain.spacing()[d];
-              axis  = d;
-            }
-        }
-    if (most < tolerable_missing_share)
+      {
+        const double cells = scene.domain.cells[d];
+        if (const unsigned int n = cut[2 * d] + cut[2 * d + 1]; dim > 1 && n > 0)
+          {
+            const double one = missing_width<dim>(weights.members(), d, first_row);
+            if (n * one / cells > most)
+              {
+                most  = n * one / cells;
+                width = one * scene.domain.spacing()[d];
+                axis  = d;
+              }
+          }
+        if (const unsigned int n = n_given(scene, d);
+            p.treatment == BoundaryTreatment::none && n > 0 && cells > 3)
+          {
+            const double extra = 0.5 * n *
+                                 extra_length<dim>(weights.members(),
+                                                   d,
+                                                   scene.domain.cells[d] + (at_centers ? 0 : 1),
+                                                   first_row,
+                                                   at_centers);
+            if (std::abs(extra) / cells > std::abs(longest))
+              {
+                longest = extra / cells;
+                length  = extra * scene.domain.spacing()[d];
+                along   = d;
+              }
+          }
+      }
+    if (!of_itself && most < tolerable_missing_share && std::abs(longest) < tolerable_missing_share)
       return {};
-    std::vector<std::string> names;
-    for (unsigned int side = 2 * axis; side < 2 * axis + 2; ++side)
-      if (cut[side])
-        names.push_back("'" + name_of_side(side, true) + "'");
-    return "families end at the " + std::string(names.size() == 1 ? "side " : "sides ") +
-           join_names(names) + ": along " + (names.size() == 1 ? "it" : "each of them") +
-           " the body conducts as if it was " + rounded_text(width) + " narrower, " +
-           rounded_text(100. * most) +
-           " % of its width in all. 'Boundary treatment = exchange' in section 'Peridynamics' lacks nothing there, nor does 'Symmetry' (section 'Boundary conditions') at sides without a given value.";
+    std::string what;
+    if (most > 0.)
+      {
+        std::vector<std::string> names;
+        for (unsigned int side = 2 * axis; side < 2 * axis + 2; ++side)
+          if (cut[side])
+            names.push_back("'" + name_of_side(side, true) + "'");
+        what = "families end at the " + std::string(names.size() == 1 ? "side " : "sides ") +
+               join_names(names) + ": along " + (names.size() == 1 ? "it" : "each of them") +
+               " the body conducts as if it was " + rounded_text(width) + " narrower, " +
+               rounded_text(100. * most) + " % of its width in all. ";
+      }
+    if (longest != 0.)
+      what +=
+        std::string(most > 0. ? "Between" : "families end at sides with given values: between") +
+        " sides with given values it conducts along " + "xyz"[along] + " as if it was " +
+        rounded_text(std::abs(length)) + (length > 0. ? " longer, " : " shorter, ") +
+        rounded_text(100. * std::abs(longest)) + " %. ";
+    if (what.empty())
+      return {};
+    const auto        obstacle = scene.obstacle_to_bonds_on_elements();
+    const std::string symmetry =
+      dim > 1 ?
+        ", nor does 'Symmetry' (section 'Boundary conditions') at sides without a given value." :
+        ".";
+    const std::string exchange = "'Boundary treatment = exchange' in section 'Peridynamics'";
+    if (obstacle.first.empty())
+      return what + exchange + " lacks nothing there" + symmetry;
+    return what +
+           (of_itself ?
+              "'Boundary treatment = auto' in section 'Peridynamics' is 'none' here and not "
+              "'exchange', which lacks nothing there: " :
+              exchange + " lacks nothing there, but is not for what this scene has: ") +
+           obstacle.first + " " + obstacle.second + ".";
   }
 
 

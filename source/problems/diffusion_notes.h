@@ -47,7 +47,10 @@ namespace PeriDeal
                                           const Scene<dim>              &scene,
                                           const std::vector<bool>       &cut);
 
-  /** What is missing along sides that cut families. */
+  /**
+   * What a body of bonds alone lacks along sides that cut families, or conducts too much or too
+   * little between sides with given values; why it is of bonds alone, and what to do.
+   */
   template <int dim>
   std::string note_on_cut_families(const Scene<dim> &scene, const KernelWeights<dim> &weights);
 

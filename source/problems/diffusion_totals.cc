@@ -42,6 +42,20 @@ namespace PeriDeal
       return std::max(Utilities::MPI::sum(apart, communicator),
                       least * Utilities::MPI::sum(all, communicator));
     }
+    /** Hardly any of the heat that passes changes the temperature anywhere. Collective. */
+    template <int dim>
+    bool is_steady(DiffusionProblem<dim> &problem, const double throughput, const double t)
+    {
+      constexpr double negligible = 1e-3;
+      if (problem.scene.time.steady)
+        return true;
+      Vector rate(problem.solution.get_partitioner());
+      with_formulas(problem.dofs().get_communicator(),
+                    [&] { problem.op().residual(rate, problem.solution, t); });
+      return rate.l1_norm() <= negligible * throughput;
+    }
+
+
     /** Since the start; for the guards, too. @param imbalance the name of its row */
     template <int dim>
     nlohmann::ordered_json add_since_start(DiffusionProblem<dim> &problem,
@@ -136,7 +150,8 @@ namespace PeriDeal
       {"heat balance", {{"throughput", balance.throughput()}, {"imbalance", balance.imbalance()}}}};
     if (!cumulative.empty())
       record.balances[problem.name()]["heat balance"]["cumulative"] = cumulative;
-    if (const auto kappa = effective_conductivity(problem.scene, balance))
+    if (const auto kappa = effective_conductivity(problem.scene, balance);
+        kappa && is_steady(problem, balance.throughput(), t))
       {
         row("effective conductivity", *kappa);
         record.balances[problem.name()]["effective conductivity"] = *kappa;

@@ -14,7 +14,7 @@ namespace PeriDeal
    * What a box or an image, voids included, conducts as a whole: heat times length over area and
    * difference of temperature, if two opposite sides are held at different constant values and all
    * others are insulated or symmetry planes. The heat is the mean of what enters at one side and
-   * leaves at the other, which is the same in the steady state only.
+   * leaves at the other, which is the same in the steady state only: the caller asks whether it is.
    */
   template <int dim>
   std::optional<double> effective_conductivity(const Scene<dim> &scene, const Balance &balance);

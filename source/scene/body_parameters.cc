@@ -45,17 +45,12 @@ namespace PeriDeal
     if (!peridynamics.natural_fluxes())
       return {peridynamics.where("Flux treatment"), "makes slaves of nodes; use 'natural'"};
     if (peridynamics.self_term != SelfTerm::none)
-      return {peridynamics.where("Self term"), "is not 'none'"};
+      return {peridynamics.where("Self term"), "is not 'none'; use that"};
     if (peridynamics.corrects_elastic_bonds())
       return {peridynamics.where("Surface correction"),
               "is for bonds without finite elements; use 'none' or 'crack scaling'"};
     if (peridynamics.nodal_volume != NodalVolume::partial)
       return {peridynamics.where("Nodal volume"), "is 'full'; use 'partial'"};
-    if (!deforms && material.depends_on_temperature())
-      return {material.where(material.conductivity.depends_on_temperature()  ? "Conductivity" :
-                             material.heat_capacity.depends_on_temperature() ? "Heat capacity" :
-                                                                               "Density"),
-              "depends on T, which bonds beside elements do not follow"};
     return {};
   }
 

@@ -7,6 +7,28 @@
 
 namespace PeriDeal
 {
+  namespace
+  {
+    /** The property that is the product of both in each phase. */
+    MaterialProperty product(const MaterialProperty &a,
+                             const MaterialProperty &b,
+                             const Phases           &phases)
+    {
+      const auto in_phase = [&](const int phase) {
+        return Expression("(" + a.formula(phase).text() + ") * (" + b.formula(phase).text() + ")",
+                          "'Diffusivity' times 'Saturated concentration' in section 'Material'",
+                          true);
+      };
+      if (!phases.gives("Diffusivity") && !phases.gives("Saturated concentration"))
+        return in_phase(-1);
+      std::vector<std::optional<Expression>> of_phases(phases.all().names.size());
+      for (unsigned int k = 0; k < of_phases.size(); ++k)
+        of_phases[k] = in_phase(k);
+      return {in_phase(-1), std::make_shared<const Regions>(phases.all()), of_phases};
+    }
+  } // namespace
+
+
   Material::Material()
     : SceneSection("Material")
   {
@@ -16,6 +38,14 @@ namespace PeriDeal
       "1",
       "power/(length temperature)",
       "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z and T, the temperature (wetness, potential) itself.");
+    declare(
+      "Diffusivity",
+      EntryType::formula,
+      "",
+      material_entry("Diffusivity").unit,
+      "Moisture only, in place of Conductivity: D of the flux -D grad C of the concentration C = Saturated concentration x wetness in each material. "
+      "Conductivity is then Diffusivity x Saturated concentration, and the body stores Saturated concentration per wetness, so that flows and amounts are masses. "
+      "A number or a formula of x, y, z and T, the wetness.");
     declare(
       "Density",
       EntryType::formula,
@@ -34,8 +64,8 @@ namespace PeriDeal
       EntryType::formula,
       "1",
       "mass/length^3",
-      "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. For the concentration field and the "
-      "weight; bonds and elements conduct wetness by Conductivity alone.");
+      "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. With Conductivity it is for the concentration field and the "
+      "weight alone, and the flux is -Conductivity x grad(wetness); with Diffusivity it is part of what conducts and stores. The wetness is continuous where it jumps.");
     declare("Interface rule",
             EntryType::choice,
             "arithmetic",
@@ -197,6 +227,21 @@ namespace PeriDeal
     heat_capacity             = phases.property("Heat capacity", capacity);
     saturated_concentration   = property("Saturated concentration");
     interface_rule            = choice<InterfaceRule>("Interface rule");
+    if (const auto diffusivity = optional_property("Diffusivity", physics))
+      {
+        if (physics != Physics::moisture)
+          error("Diffusivity",
+                "is for 'Physics = moisture'; 'Physics' is '" + names_of(physics).physics +
+                  "'. Use 'Conductivity', 'Density' and 'Heat capacity'.");
+        for (const std::string entry : {"Conductivity", "Density", "Heat capacity"})
+          refuse(
+            is_given(entry) || phases.gives(entry),
+            entry,
+            "is given beside 'Diffusivity', from which it follows with 'Saturated concentration'. Give one of the two.");
+        conductivity  = product(*diffusivity, saturated_concentration, phases);
+        density       = saturated_concentration;
+        heat_capacity = MaterialProperty(1.);
+      }
     if (conductivity.depends_on_temperature() && interface_rule == InterfaceRule::harmonic)
       error(
         "Interface rule",

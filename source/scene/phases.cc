@@ -255,6 +255,7 @@ namespace PeriDeal
   {
     static const std::vector<MaterialEntry> entries = {
       {"Conductivity", "power/(length temperature)", true, false, true, true},
+      {"Diffusivity", "length^2/time", true, false, true, true},
       {"Density", "mass/length^3", true, true, true, true},
       {"Heat capacity", "energy/(mass temperature)", true, false, true, true},
       {"Saturated concentration", "mass/length^3", true, false, false, true},

@@ -142,6 +142,25 @@ namespace PeriDeal
     }
 
 
+    /** Which quantity is continuous where materials of other saturated concentrations meet. */
+    template <int dim>
+    void note_saturation(Scene<dim> &scene)
+    {
+      const Material &material = scene.material;
+      const auto      is_one   = [](const MaterialProperty &property) {
+        return property.is_constant() && property.value(Point<dim>()) == 1.;
+      };
+      if (material.saturated_concentration.is_constant() || !material.text("Diffusivity").empty() ||
+          !is_one(material.density) || !is_one(material.heat_capacity))
+        return;
+      scene.domain.notes.push_back(
+        material.where("Saturated concentration") +
+        " varies, and is for the concentration field and the weight alone here: the wetness w, concentration over saturated one, is continuous, its flux is "
+        "-'Conductivity' grad(w), and each volume stores w. Where 'Conductivity' is meant as the diffusivity D of a flux -D grad(concentration), as in programs of mass diffusion, "
+        "give it as 'Diffusivity' instead: the body then conducts D x 'Saturated concentration' and stores 'Saturated concentration'.");
+    }
+
+
     /** Parts that no condition names. */
     template <int dim>
     void note_unused_parts(Scene<dim> &scene)
@@ -169,7 +188,10 @@ namespace PeriDeal
     if (scene.general.physics == Physics::elasticity && !scene.elasticity.is_static())
       note_motion(scene);
     if (scene.general.physics == Physics::moisture)
-      note_wetness(scene);
+      {
+        note_wetness(scene);
+        note_saturation(scene);
+      }
     note_unused_parts(scene);
   }
 

@@ -50,8 +50,10 @@ namespace PeriDeal
   template <int dim>
   CellStiffness<dim> ConductingBonds<dim>::stiffness(const BodyParameters<dim> &body)
   {
-    return {[&body](const Point<dim> &p) { return body.material.conductivity.value(p); },
-            body.material.uniform_conductivity()};
+    const MaterialProperty &kappa = body.material.conductivity;
+    return {[&kappa](const Point<dim> &p, const double T) { return kappa.value(p, T); },
+            body.material.uniform_conductivity(),
+            kappa.depends_on_temperature() ? &body.initial_and_source.initial_value : nullptr};
   }
 
 
@@ -149,10 +151,11 @@ namespace PeriDeal
   template <int dim>
   CellStiffness<dim> ElasticBonds<dim>::stiffness(const BodyParameters<dim> &body)
   {
-    return {[&body](const Point<dim> &p) {
+    return {[&body](const Point<dim> &p, const double) {
               return bond_part(body.material.moduli(p), dim, body.elasticity.plane);
             },
-            body.material.uniform_moduli()};
+            body.material.uniform_moduli(),
+            nullptr};
   }
 
 

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/coupling/lattice_bonds.h>
@@ -21,15 +20,16 @@ namespace PeriDeal
                                   const CellStiffness<dim>  &stiffness)
     : families(nodes, body, HaloAround::cells)
     , zone(zone)
+    , stiffness(stiffness)
     , last(body.cracks.end_time)
   {
     uniform = stiffness.uniform;
     plain   = uniform && body.domain.is_box() && !nodes.is_graded();
     if (uniform && nodes.n_local() > 0)
-      uniform_stiffness = stiffness.at(nodes.position(0));
+      uniform_stiffness = stiffness.at_first(nodes.position(0));
     find_offsets();
     find_sites(body);
-    find_cells(body, stiffness);
+    find_cells(body);
   }
 
 
@@ -158,14 +158,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeBonds<dim>::find_cells(const BodyParameters<dim> &body,
-                                     const CellStiffness<dim>  &stiffness)
+  void LatticeBonds<dim>::find_cells(const BodyParameters<dim> &body)
   {
     if (sites.empty())
       return;
     const Lattice<dim> &lattice = *families.nodes().lattice();
-    const QGauss<dim>   points(2);
-    Site                last = corner;
+    Site                last    = corner;
     for (unsigned int d = 0; d < dim; ++d)
       last[d] += extent[d] - 2;
     for_each_site(corner, last, [&](const Site &site) {
@@ -178,8 +176,8 @@ namespace PeriDeal
             other[d] += (v >> d) & 1;
           data.cell = data.cell && at(other)->node != numbers::invalid_unsigned_int;
         }
-      const Point<dim> low = lattice.position(site);
-      data.cell            = data.cell && body.domain.has_cell_at(low + 0.5 * lattice.spacing);
+      data.cell = data.cell &&
+                  body.domain.has_cell_at(lattice.position(site) + 0.5 * lattice.spacing);
       if (!data.cell)
         return;
       if (uniform)
@@ -187,16 +185,42 @@ namespace PeriDeal
           data.lowest = data.highest = uniform_stiffness;
           return;
         }
-      data.lowest = std::numeric_limits<double>::max();
-      for (const Point<dim> &q : points.get_points())
-        {
-          Point<dim> p = low;
-          for (unsigned int d = 0; d < dim; ++d)
-            p[d] += q[d] * lattice.spacing[d];
-          const double value = stiffness.at(p);
-          data.lowest        = std::min(data.lowest, value);
-          data.highest       = std::max(data.highest, value);
-        }
+      find_range(site, nullptr);
+    });
+  }
+
+
+  template <int dim>
+  void LatticeBonds<dim>::find_range(const Site &cell, const Vector *const u)
+  {
+    CellCorners<dim>                          corners;
+    typename CellStiffness<dim>::CornerValues temperatures{};
+    for (unsigned int v = 0; v < corners.size(); ++v)
+      {
+        Site site = cell;
+        for (unsigned int d = 0; d < dim; ++d)
+          site[d] += (v >> d) & 1;
+        corners[v] = families.nodes().lattice()->position(site);
+        if (u != nullptr)
+          temperatures[v] = u->local_element(at(site)->node);
+      }
+    const auto range  = stiffness.range(corners, u != nullptr ? &temperatures : nullptr);
+    own(cell).lowest  = range.lowest;
+    own(cell).highest = range.highest;
+  }
+
+
+  template <int dim>
+  void LatticeBonds<dim>::take_conductivities_at(const Vector &u)
+  {
+    if (sites.empty() || !stiffness.depends_on_temperature())
+      return;
+    Site last = corner;
+    for (unsigned int d = 0; d < dim; ++d)
+      last[d] += extent[d] - 2;
+    for_each_site(corner, last, [&](const Site &site) {
+      if (at(site)->cell)
+        find_range(site, &u);
     });
   }
 
@@ -220,7 +244,7 @@ namespace PeriDeal
                                                 std::vector<unsigned int> &neighbors) const
   {
     neighbors.clear();
-    if (stays)
+    if (stays && !stiffness.depends_on_temperature())
       {
         for_each_bond(node,
                       [&](const unsigned int neighbor, const auto &, const double, const bool) {

@@ -161,6 +161,16 @@ namespace PeriDeal
   }
 
   template <int dim, typename Law>
+  void LatticeExchange<dim, Law>::take_conductivities_at(const Vector &u)
+  {
+    if constexpr (Law::n_components == 1)
+      {
+        law.take_conductivities_at(u);
+        bonds.take_conductivities_at(u);
+      }
+  }
+
+  template <int dim, typename Law>
   bool LatticeExchange<dim, Law>::in_zone(const unsigned int node) const
   {
     return bonds.in_zone(node);

@@ -11,7 +11,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace PeriDeal
 {
@@ -54,6 +53,7 @@ namespace PeriDeal
         HaloAround::cells,
         [at_end = zone_at_end(zone, body)](const Point<dim> &p) { return at_end.contains(p); })
     , law(own_families, body)
+    , stiffness(Law::stiffness(body))
     , zone(zone)
   {
     const CrackHistory<dim> &history = own_families.cracks().history();
@@ -71,7 +71,7 @@ namespace PeriDeal
       }
     stays = joined == may_join;
     throw_if_zone_empty(n_in_zone, nodes.communicator());
-    find_cells(body);
+    find_cells();
     send_cells();
     find_paths(hanging);
     find_bonds();
@@ -169,15 +169,18 @@ namespace PeriDeal
             ZoneBond zone_bond{{i, bond.neighbor}, bond.weight};
             if (!follow(zone_bond, way))
               continue;
-            double lowest = std::numeric_limits<double>::max(), highest = 0.;
+            typename CellStiffness<dim>::Range on_way;
             for (const PathPiece<dim> &piece : way)
               {
-                lowest  = std::min(lowest, states[piece.cell].lowest);
-                highest = std::max(highest, states[piece.cell].highest);
+                const auto &in_cell = states[piece.cell].of_stiffness;
+                on_way.lowest       = std::min(on_way.lowest, in_cell.lowest);
+                on_way.highest      = std::max(on_way.highest, in_cell.highest);
               }
-            if (highest > largest_contrast * lowest)
+            if (on_way.highest > largest_contrast * on_way.lowest)
               continue;
-            zone_bond.intact *= lowest * Law::scale_of(vector_of(zone_bond));
+            if (stiffness.depends_on_temperature())
+              zone_bond.intact *= kept_at_contrast(on_way.highest / on_way.lowest);
+            zone_bond.intact *= on_way.lowest * Law::scale_of(vector_of(zone_bond));
             const unsigned int number = zone_bonds.size();
             take(zone_bond, zone_bond.intact, way);
             for (const PathPiece<dim> &piece : way)
@@ -190,7 +193,7 @@ namespace PeriDeal
           }
       }
     find_strains();
-    share_strains();
+    share_states();
     scale_bonds(way_cells, way_ends);
   }
 
@@ -254,7 +257,7 @@ namespace PeriDeal
         const Eigen::MatrixXd                   linear = values.transpose() * bonds * values;
         const double                            largest =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(linear).eigenvalues().maxCoeff();
-        states[c].strain = largest / (states[c].lowest * volume_of(cells[c].corners));
+        states[c].strain = largest / (states[c].of_stiffness.lowest * volume_of(cells[c].corners));
       }
   }
 
@@ -284,7 +287,7 @@ namespace PeriDeal
     neighbors.clear();
     if (!may_join[node])
       return;
-    if (stays)
+    if (stays && !stiffness.depends_on_temperature())
       {
         for (const unsigned int number : bonds_of_node[node])
           neighbors.push_back(
@@ -413,6 +416,24 @@ namespace PeriDeal
     return all > 0. ? kept / all : 1.;
   }
 
+
+  template <int dim, typename Law>
+  void MeshExchange<dim, Law>::take_conductivities_at(const Vector &u)
+  {
+    if constexpr (Law::n_components == 1)
+      {
+        law.take_conductivities_at(u);
+        typename CellStiffness<dim>::CornerValues temperatures;
+        for (unsigned int c = 0; c < taken.size(); ++c)
+          {
+            for (unsigned int v = 0; v < n_corners; ++v)
+              temperatures[v] = u(cells[c].nodes[v]);
+            states[c].of_stiffness = stiffness.range(cells[c].corners, &temperatures);
+          }
+        share_states();
+        find_bonds();
+      }
+  }
 
   template <int dim, typename Law>
   bool MeshExchange<dim, Law>::in_zone(const unsigned int node) const

@@ -4,38 +4,25 @@
 // The cells around this process's own, copies of those of other processes included.
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <perideal/bonds/process_boxes.h>
 #include <perideal/operators/coupling/mesh_exchange.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace PeriDeal
 {
   using namespace dealii;
 
   template <int dim, typename Law>
-  void MeshExchange<dim, Law>::find_cells(const BodyParameters<dim> &body)
+  void MeshExchange<dim, Law>::find_cells()
   {
-    const DoFHandler<dim>   &dofs = own_families.nodes().dof_handler();
-    FEValues<dim>            values(dofs.get_fe(), QGauss<dim>(2), update_quadrature_points);
-    const CellStiffness<dim> stiffness = Law::stiffness(body);
+    const DoFHandler<dim> &dofs = own_families.nodes().dof_handler();
     cell_of_index.assign(dofs.get_triangulation().n_active_cells(), numbers::invalid_unsigned_int);
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           PathCell<dim> shape;
-          CellState     near{std::numeric_limits<double>::max(), 0.};
-          values.reinit(cell);
-          for (const Point<dim> &q : values.get_quadrature_points())
-            {
-              const double k = stiffness.at(q);
-              near.lowest    = std::min(near.lowest, k);
-              near.highest   = std::max(near.highest, k);
-            }
           for (unsigned int v = 0; v < n_corners; ++v)
             {
               shape.corners[v] = cell->vertex(v);
@@ -43,7 +30,7 @@ namespace PeriDeal
             }
           cell_of_index[cell->active_cell_index()] = cells.size();
           cells.push_back(shape);
-          states.push_back(near);
+          states.push_back({stiffness.range(shape.corners, nullptr)});
         }
     taken.resize(cells.size());
   }
@@ -83,15 +70,12 @@ namespace PeriDeal
                 numbers.push_back(p[d]);
             for (const auto node : cells[c].nodes)
               numbers.push_back(static_cast<double>(node)); // exact up to 2^53
-            numbers.push_back(states[c].lowest);
-            numbers.push_back(states[c].highest);
           }
-    constexpr unsigned int record_size = n_corners * (dim + 1) + 2;
+    constexpr unsigned int record_size = n_corners * (dim + 1);
     for (const auto &[rank, numbers] : Utilities::MPI::some_to_some(communicator, to_send))
       for (std::size_t k = 0; k < numbers.size(); k += record_size)
         {
           PathCell<dim> shape;
-          CellState     near;
           for (unsigned int v = 0; v < n_corners; ++v)
             {
               for (unsigned int d = 0; d < dim; ++d)
@@ -99,17 +83,16 @@ namespace PeriDeal
               shape.nodes[v] =
                 static_cast<types::global_dof_index>(numbers[k + n_corners * dim + v]);
             }
-          near.lowest  = numbers[k + record_size - 2];
-          near.highest = numbers[k + record_size - 1];
           received[rank].push_back(cells.size());
           cells.push_back(shape);
-          states.push_back(near);
+          states.emplace_back();
         }
+    share_states();
   }
 
 
   template <int dim, typename Law>
-  void MeshExchange<dim, Law>::share_strains()
+  void MeshExchange<dim, Law>::share_states()
   {
     const MPI_Comm communicator = own_families.nodes().communicator();
     if (Utilities::MPI::n_mpi_processes(communicator) == 1)
@@ -117,17 +100,21 @@ namespace PeriDeal
     std::map<unsigned int, std::vector<double>> to_send;
     for (const auto &[rank, list] : sent)
       for (const unsigned int c : list)
-        to_send[rank].push_back(states[c].strain);
-    for (const auto &[rank, strains] : Utilities::MPI::some_to_some(communicator, to_send))
-      for (std::size_t k = 0; k < strains.size(); ++k)
-        states[received.at(rank)[k]].strain = strains[k];
+        {
+          const auto &[of_stiffness, strain] = states[c];
+          to_send[rank].insert(to_send[rank].end(),
+                               {of_stiffness.lowest, of_stiffness.highest, strain});
+        }
+    for (const auto &[rank, numbers] : Utilities::MPI::some_to_some(communicator, to_send))
+      for (std::size_t k = 0; k < numbers.size() / 3; ++k)
+        states[received.at(rank)[k]] = {{numbers[3 * k], numbers[3 * k + 1]}, numbers[3 * k + 2]};
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim, Law)                                                \
-  template void MeshExchange<dim, Law<dim>>::find_cells(const BodyParameters<dim> &); \
-  template void MeshExchange<dim, Law<dim>>::send_cells();                            \
-  template void MeshExchange<dim, Law<dim>>::share_strains();
+#define PERIDEAL_INSTANTIATE(dim, Law)                     \
+  template void MeshExchange<dim, Law<dim>>::find_cells(); \
+  template void MeshExchange<dim, Law<dim>>::send_cells(); \
+  template void MeshExchange<dim, Law<dim>>::share_states();
   PERIDEAL_INSTANTIATE(1, ConductingBonds)
   PERIDEAL_INSTANTIATE(2, ConductingBonds)
   PERIDEAL_INSTANTIATE(3, ConductingBonds)

@@ -179,6 +179,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BondsBesideElements<dim>::take_conductivities_at(const Vector &u)
+  {
+    coupled->take_conductivities_at(u);
+    recount = true;
+  }
+
+
+  template <int dim>
   void BondsBesideElements<dim>::make_form()
   {
     set_form_factors();

@@ -136,16 +136,23 @@ namespace PeriDeal
     if (!this->depends_on_solution())
       return;
     cell_material.take(u);
+    if (zone_bonds && body.material.conductivity.depends_on_temperature())
+      zone_bonds->take_conductivities_at(cell_material.temperatures_taken());
     stiffness = 0.;
     mass      = 0.;
     capacity  = 0.;
     fill();
+    // Damage may leave nodes alone, which keep their heat.
+    const bool may_isolate = zone_bonds &&
+                             !zone_bonds->coupling().families().cracks().broken().empty();
     std::string message;
     for (unsigned int i = 0; i < capacity.locally_owned_size() && message.empty(); ++i)
       {
-        const auto index                    = capacity.get_partitioner()->local_to_global(i);
-        stiffness_diagonal.local_element(i) = stiffness.diag_element(index);
-        if (!(stiffness_diagonal.local_element(i) > 0.) || !(capacity.local_element(i) > 0.))
+        const auto index = capacity.get_partitioner()->local_to_global(i);
+        stiffness_diagonal.local_element(i) =
+          stiffness.diag_element(index) + (zone_bonds ? zone_bonds->sum_of(i) : 0.);
+        if ((!may_isolate && !(stiffness_diagonal.local_element(i) > 0.)) ||
+            !(capacity.local_element(i) > 0.))
           message =
             "'Conductivity', 'Density' or 'Heat capacity' in section 'Material' is not positive at the temperatures near " +
             this->place_of(i) +

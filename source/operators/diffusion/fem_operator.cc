@@ -88,6 +88,9 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::find_gershgorin()
   {
+    // Damage may leave nodes alone, which keep their heat.
+    const bool may_isolate = zone_bonds &&
+                             !zone_bonds->coupling().families().cracks().broken().empty();
     std::string         message;
     double              bound = 0.;
     std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);
@@ -100,7 +103,7 @@ namespace PeriDeal
       row_sums[node] = 0.;
     for (unsigned int i = 0; i < stiffness_diagonal.locally_owned_size(); ++i)
       {
-        if (!(stiffness_diagonal.local_element(i) > 0.))
+        if (!may_isolate && !(stiffness_diagonal.local_element(i) > 0.))
           message =
             zone_bonds ?
               "The node at " + this->place_of(i) +

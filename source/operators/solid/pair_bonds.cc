@@ -38,7 +38,7 @@ namespace PeriDeal
         double           &s = stretches.local_element(i);
         s                   = material.critical_stretch ?
                                 material.critical_stretch->value(p) :
-                                std::sqrt(material.fracture_energy->value(p) / (law.at(p) * of_square));
+                                std::sqrt(material.fracture_energy->value(p) / (law.at_first(p) * of_square));
         if (message.empty() && !(s > 0.))
           message = stretch_fault(material.critical_stretch.has_value(), p);
       }

@@ -154,6 +154,12 @@ namespace PeriDeal
     virtual const Families<dim> &families() const = 0;
 
     virtual std::size_t memory_consumption() const = 0;
+
+    /**
+     * Bonds and cells get the conductivities at the temperatures u, whose ghosts are up to date.
+     * Collective. Throws UserError where one is not positive.
+     */
+    virtual void take_conductivities_at(const Vector &) {}
   };
 
 

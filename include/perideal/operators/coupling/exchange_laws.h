@@ -98,6 +98,12 @@ namespace PeriDeal
 
     void set_form_factors(std::vector<double> factors);
 
+    /** As Coupling: what cracks leave of a bond may depend on its conductivity. */
+    void take_conductivities_at(const Vector &u)
+    {
+      bonds.conductivities().take_at(u);
+    }
+
     std::size_t memory_consumption() const
     {
       return bonds.memory_consumption();

@@ -8,24 +8,15 @@
 #include <perideal/laws/interface.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/coupling/breakable_zone.h>
+#include <perideal/operators/coupling/cell_stiffness.h>
 #include <perideal/scene/body_parameters.h>
 #include <perideal/scene/zone.h>
 
-#include <functional>
 #include <limits>
 #include <vector>
 
 namespace PeriDeal
 {
-  /** What bonds follow: the stiffness at a place in the body, or the conductivity. */
-  template <int dim>
-  struct CellStiffness
-  {
-    std::function<double(const dealii::Point<dim> &)> at;
-    bool                                              uniform; // the same everywhere
-  };
-
-
   /**
    * The active bonds of an exchange on a lattice of equal cells, and the cells that they pass: what
    * diffusion and elasticity have in common.
@@ -34,7 +25,8 @@ namespace PeriDeal
    * cells on its way, and along the rim of a void no more than cells have to give: w(xi) V^2 k, V
    * of a cell, times the part of the cells around its way that exist. It is active if both nodes
    * are in the zone, its way lies within the body's cells of lattice size, and the stiffness on it
-   * varies by less than the factor largest_contrast.
+   * varies by less than the factor largest_contrast; where it depends on the temperature,
+   * kept_at_contrast() of the bond is active.
    * On a graded mesh hanging nodes and others on the side of a larger cell have no bonds.
    */
   template <int dim>
@@ -148,6 +140,7 @@ namespace PeriDeal
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const;
     void                                  join(const double time);
     void                                  apply_change(const ChangeSet<dim> &change);
+    void                                  take_conductivities_at(const Vector &u);
     bool                                  in_zone(const unsigned int node) const;
     std::size_t                           memory_consumption() const;
 
@@ -161,10 +154,11 @@ namespace PeriDeal
     bool plain = true; // no void, one stiffness, one cell size
 
   private:
-    void find_offsets();
-    void find_sites(const BodyParameters<dim> &body);
-    void set_table_around(const std::vector<bool> &candidates);
-    void find_cells(const BodyParameters<dim> &body, const CellStiffness<dim> &stiffness);
+    void            find_offsets();
+    void            find_sites(const BodyParameters<dim> &body);
+    void            set_table_around(const std::vector<bool> &candidates);
+    void            find_cells(const BodyParameters<dim> &body);
+    void            find_range(const Site &cell, const Vector *const u);
     const SiteData *at(const Site &site) const;
     SiteData       &own(const Site &site);
     Site            site_of(const unsigned int node) const;
@@ -172,13 +166,14 @@ namespace PeriDeal
     std::size_t number_of(const SiteData &start, const Offset &offset) const;
     std::size_t number_between(const unsigned int a, const unsigned int b) const;
 
-    double                last;                      // time of the run
-    bool                  stays             = false; // all that may join the zone are in it
-    bool                  uniform           = true;
-    double                uniform_stiffness = 0.;
-    Site                  corner{}, extent{};
-    std::vector<SiteData> sites;  // of the box around all nodes that may ever be in the zone
-    std::vector<bool>     broken; // by site of the start and offset; empty while all are whole
+    const CellStiffness<dim> stiffness;
+    double                   last;                      // time of the run
+    bool                     stays             = false; // all that may join the zone are in it
+    bool                     uniform           = true;
+    double                   uniform_stiffness = 0.;
+    Site                     corner{}, extent{};
+    std::vector<SiteData>    sites;  // of the box around all nodes that may ever be in the zone
+    std::vector<bool>        broken; // by site of the start and offset; empty while all are whole
   };
 
 
@@ -225,10 +220,11 @@ namespace PeriDeal
             }
         least = std::min(least, n_around / piece.cells.size()); // 0 ends it
       }
-    const double whole = families.nodes().lattice()->cell_volume();
-    return highest > largest_contrast * lowest ?
-             0. :
-             lowest * offset.weight * std::min(volumes, least * whole * whole);
+    const double whole = families.nodes().lattice()->cell_volume(),
+                 most  = lowest * offset.weight * std::min(volumes, least * whole * whole);
+    if (stiffness.depends_on_temperature())
+      return most * kept_at_contrast(highest / lowest);
+    return highest > largest_contrast * lowest ? 0. : most;
   }
 
 

@@ -55,6 +55,7 @@ namespace PeriDeal
     void                                  join(const double time) override;
     void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
+    void                                  take_conductivities_at(const Vector &u) override;
     const Families<dim>                  &families() const override;
     std::size_t                           memory_consumption() const override;
 

@@ -51,6 +51,7 @@ namespace PeriDeal
     void                                  join(const double time) override;
     void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
+    void                                  take_conductivities_at(const Vector &u) override;
     const Families<dim>                  &families() const override;
     std::size_t                           memory_consumption() const override;
 
@@ -64,8 +65,8 @@ namespace PeriDeal
     /** Of a cell of this process, or of a copy of one of another. */
     struct CellState
     {
-      double lowest, highest; // k
-      double strain = 0.;     // lambda_c
+      typename CellStiffness<dim>::Range of_stiffness; // k
+      double                             strain = 0.;  // lambda_c
     };
 
     /** Between two nodes known here, the first one of them where the bond starts. */
@@ -76,9 +77,9 @@ namespace PeriDeal
       double       scale = 1.;
     };
 
-    void                   find_cells(const BodyParameters<dim> &body);
+    void                   find_cells();
     void                   send_cells();
-    void                   share_strains();
+    void                   share_states();
     void                   find_paths(const std::vector<bool> &hanging);
     void                   find_bonds();
     void                   scale_bonds(const std::vector<unsigned int> &way_cells,
@@ -98,6 +99,7 @@ namespace PeriDeal
 
     Families<dim>                                     own_families;
     Law                                               law;
+    const CellStiffness<dim>                          stiffness;
     Zone<dim>                                         zone;
     std::vector<bool>                                 joined, may_join; // by local number of nodes
     bool                                              stays = false;    // all have joined

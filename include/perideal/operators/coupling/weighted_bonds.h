@@ -26,6 +26,11 @@ namespace PeriDeal
     void possible_neighbors_of(const unsigned int         node,
                                std::vector<unsigned int> &neighbors) const override;
 
+    void take_conductivities_at(const Vector &u) override
+    {
+      bonds.conductivities().take_at(u);
+    }
+
   private:
     std::size_t memory_of_bonds() const override;
 

@@ -65,6 +65,9 @@ namespace PeriDeal
                      dealii::TrilinosWrappers::SparseMatrix &matrix,
                      RowSet                                 &touched) const;
 
+    /** As Coupling. */
+    void take_conductivities_at(const Vector &u);
+
     /** Make the form of bonds that are apart. */
     void make_form();
 

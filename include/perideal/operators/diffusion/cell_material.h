@@ -41,6 +41,12 @@ namespace PeriDeal
     /** Be the material of temperatures. Collective. */
     void take(const Vector &u);
 
+    /** Those of the last take(), with ghosts. */
+    const Vector &temperatures_taken() const
+    {
+      return taken;
+    }
+
     /**
      * Set the matrices of a whole cell: int kappa grad N_i . grad N_j and int rho c N_i N_j. Not
      * collective.

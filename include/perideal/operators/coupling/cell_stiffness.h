@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <perideal/laws/interface.h>
+#include <perideal/mesh/cell_geometry.h>
+#include <perideal/scene/expression.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * Part of its strength that a bond of an exchange has where the conductivities of temperatures
+   * differ by that factor on its way: it fades, since iterations between fields and conductivities
+   * would not end where bonds come and go at one factor.
+   */
+  inline double kept_at_contrast(const double factor)
+  {
+    constexpr double begin = 1.25;
+    return factor <= begin ? 1. :
+                             std::max(0., (largest_contrast - factor) / (largest_contrast - begin));
+  }
+
+
+  /** What the bonds of an exchange follow: the stiffness in the body, or the conductivity. */
+  template <int dim>
+  struct CellStiffness
+  {
+    static constexpr unsigned int n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
+    using CornerValues                      = std::array<double, n_corners>;
+
+    std::function<double(const dealii::Point<dim> &, const double)> at;      // place, temperature
+    bool                                                            uniform; // the same everywhere
+    const Expression *start; // temperatures at first; null where the stiffness depends on none
+
+    bool depends_on_temperature() const
+    {
+      return start != nullptr;
+    }
+
+    double at_first(const dealii::Point<dim> &p) const
+    {
+      return at(p, depends_on_temperature() ? start->value(p) : 0.);
+    }
+
+    struct Range
+    {
+      double lowest = std::numeric_limits<double>::max(), highest = 0.;
+    };
+
+    /**
+     * The smallest and the largest at the Gauss points of a cell.
+     * @param temperatures of the corners; null: those at first
+     */
+    Range range(const CellCorners<dim> &corners, const CornerValues *const temperatures) const;
+  };
+
+
+  template <int dim>
+  typename CellStiffness<dim>::Range CellStiffness<dim>::range(
+    const CellCorners<dim>   &corners,
+    const CornerValues *const temperatures) const
+  {
+    static const std::vector<CornerValues> shapes = [] {
+      std::vector<CornerValues> list;
+      for (const dealii::Point<dim> &q : dealii::QGauss<dim>(2).get_points())
+        list.push_back(shape_values(q));
+      return list;
+    }();
+    Range range;
+    for (const CornerValues &shape : shapes)
+      {
+        dealii::Point<dim> p;
+        double             T = 0.;
+        for (unsigned int v = 0; v < n_corners; ++v)
+          {
+            p += shape[v] * corners[v];
+            if (temperatures != nullptr)
+              T += shape[v] * (*temperatures)[v];
+          }
+        const double k = temperatures != nullptr ? at(p, T) : at_first(p);
+        range.lowest   = std::min(range.lowest, k);
+        range.highest  = std::max(range.highest, k);
+      }
+    return range;
+  }
+} // namespace PeriDeal

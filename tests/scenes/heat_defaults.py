@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""What a scene of heat or moisture gets when it asks for nothing special.
+
+    heat_defaults.py material    conductivity and storage of T: flows by Kirchhoff's transformation, transients by finite volumes in 1D
+    heat_defaults.py fall_back   what keeps bonds from exchange: the note, and its advice
+    heat_defaults.py moisture    two layers of other saturated concentrations: what is continuous, and `Diffusivity`
+    heat_defaults.py steady      an effective conductivity is told of steady states alone
+"""
+
+import math
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+from scene_test import Comparison, check, finish, run_scene
+
+PD = "peridynamics"
+ALL = "finite elements, peridynamics, coupled"
+
+WALL = """
+set Dimension = {dim}
+set Physics = {physics}
+set Models = {models}
+subsection Domain
+  set Cells = {cells}
+end
+subsection Material
+{material}
+end
+subsection Boundary conditions
+  set Dirichlet = {sides}
+end
+subsection Coupling
+  set Zone = 0.3 - abs(x - 0.5)
+end
+{more}
+"""
+
+STEADY = "subsection Time\n  set Steady = true\nend\n"
+
+
+def wall(material, cells="20, 20", dim=2, models=PD, sides="left: 0; right: 1", more=STEADY, physics="heat"):
+    return WALL.format(dim=dim, physics=physics, models=models, cells=cells, sides=sides, more=more,
+                       material="\n".join(f"  set {line}" for line in material))
+
+
+def transient(stepper, end, step="", probes="0.25 ; 0.5 ; 0.75", initial="0"):
+    return (f"subsection Time\n  set Stepper = {stepper}\n  set End time = {end}\n" + (f"  set Time step = {step}\n" if step else "") +
+            f"end\nsubsection Initial and source\n  set Initial value = {initial}\nend\nsubsection Output\n  set Probes = {probes}\nend\n")
+
+
+def finite_volumes(conductivity, storage, end, left=0.0, right=1.0, cells=200, saturated=None):
+    """Values at 1/4, 1/2 and 3/4 of a bar from 0 on, by finite volumes and a trapezoidal rule in time (Heun's method)."""
+    h = 1 / cells
+    x = (np.arange(cells) + 0.5) * h
+
+    def rate(u):
+        k = conductivity(x, u)
+        between = (u[1:] - u[:-1]) * 2 * k[1:] * k[:-1] / (k[1:] + k[:-1]) / h
+        ends = [2 * conductivity(np.array([0.0]), np.array([left]))[0] * (u[0] - left) / h,
+                2 * conductivity(np.array([1.0]), np.array([right]))[0] * (right - u[-1]) / h]
+        flux = np.concatenate(([ends[0]], between, [ends[1]]))
+        return (flux[1:] - flux[:-1]) / h / storage(x, u)
+
+    u = np.zeros(cells)
+    sizes = np.linspace(min(left, right, 0), max(left, right, 0), 50)
+    fastest = max(float(np.max(conductivity(np.full(50, p), sizes) / storage(np.full(50, p), sizes))) for p in (0.1, 0.9))
+    steps = math.ceil(end / (0.4 * h * h / fastest))
+    for _ in range(steps):
+        first = rate(u)
+        u = u + 0.5 * end / steps * (first + rate(u + end / steps * first))
+    return [float(np.interp(p, x, u)) for p in (0.25, 0.5, 0.75)]
+
+
+def distorted_mesh(path, n=16):
+    """A square of quadrilaterals whose inner vertices are out of place."""
+    nodes = []
+    for j in range(n + 1):
+        for i in range(n + 1):
+            inside = 0 < i < n and 0 < j < n
+            shift = 0.15 / n if inside else 0.0
+            nodes.append((i / n + shift * math.sin(3 * i + 5 * j), j / n + shift * math.cos(4 * i + 2 * j)))
+    at = lambda i, j: j * (n + 1) + i + 1
+    elements = [f"3 2 9 9 {at(i, j)} {at(i + 1, j)} {at(i + 1, j + 1)} {at(i, j + 1)}" for j in range(n) for i in range(n)]
+    elements += [f"1 2 1 1 {at(0, j)} {at(0, j + 1)}" for j in range(n)] + [f"1 2 2 2 {at(n, j)} {at(n, j + 1)}" for j in range(n)]
+    with open(path, "w") as file:
+        file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + f"{len(nodes)}\n")
+        file.writelines(f"{k + 1} {x!r} {y!r} 0\n" for k, (x, y) in enumerate(nodes))
+        file.write(f"$EndNodes\n$Elements\n{len(elements)}\n")
+        file.writelines(f"{k + 1} {e}\n" for k, e in enumerate(elements))
+        file.write("$EndElements\n")
+
+
+def flow(run, model=PD, side="right"):
+    return run.model(model)["boundary flux"][side]
+
+
+def material():
+    table = Comparison("Material of T")
+    # The first is of a user; the others have the flow of the mean conductivity, whatever the profile.
+    for dim, cells in ((1, "40"), (2, "40, 40"), (3, "8, 8, 8")):
+        run = run_scene(wall(["Conductivity = 1 + 1e-6*T"], cells, dim, ALL if dim > 1 else PD))
+        for model in run.summary["models"]:
+            table.add(f"1 + 1e-6 T, {dim}D, {model}", run.model(model)["effective conductivity"], 1 + 5e-7, relative=1e-5)
+        check("Boundary treatment" not in run.stdout, f"{dim}D: nothing is said of a worse treatment")
+    for b, cells, ranks in ((1, "20, 10", 1), (4, "20, 10", 2), (20, "40, 6", 1)):
+        run = run_scene(wall([f"Conductivity = 1 + {b}*T"], cells, models=ALL), ranks=ranks)
+        for model in run.summary["models"]:
+            table.add(f"1 + {b} T, {model}", run.model(model)["effective conductivity"], 1 + b / 2, relative=2e-3)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "square.msh")
+        distorted_mesh(path)
+        on_mesh = {"Domain/Cells": "1, 1", "Domain/Shape": "mesh file", "Domain/Mesh file": path, "Peridynamics/Horizon": "0.19",
+                   "Boundary conditions/Dirichlet": "1: 0; 2: 1"}
+        for ranks in (1, 2):
+            run = run_scene(wall(["Conductivity = 1 + 4*T"]), on_mesh, ranks=ranks)
+            table.add(f"1 + 4 T, mesh from a file, {ranks} processes", flow(run, side="2"), 3, relative=5e-3)
+    # Transients.
+    one = lambda x, u: np.ones_like(u)
+    for title, lines, k, c in (("conductivity", ["Conductivity = 1 + 2*T"], lambda x, u: 1 + 2 * u, one),
+                               ("storage", ["Heat capacity = 1 + 2*T", "Density = 1"], one, lambda x, u: 1 + 2 * u),
+                               ("both", ["Conductivity = 1 + T", "Heat capacity = 1 + 2*T"], lambda x, u: 1 + u, lambda x, u: 1 + 2 * u)):
+        end = 0.1
+        exact = finite_volumes(k, c, end, cells=100)
+        for stepper, step, dim, cells in (("auto", "", 2, "30, 8"), ("rkc2", "", 1, "30"), ("bdf2", "0.002", 1, "30"), ("sdirk2", "0.005", 2, "30, 6")):
+            probes = "0.25 ; 0.5 ; 0.75" if dim == 1 else "0.25, 0 ; 0.5, 0 ; 0.75, 0"
+            run = run_scene(wall(lines, cells, dim, more=transient(stepper, end, step, probes)))
+            for x, value in zip((0.25, 0.5, 0.75), exact):
+                table.add(f"{title}, {stepper}, {dim}D, x = {x}", run.probe(PD, (x,) if dim == 1 else (x, 0), time=end), value, absolute=4e-3)
+    table.show()
+
+
+def fall_back():
+    centers = {"Domain/Nodes": "cell centers"}
+    for dim, cells in ((1, "20"), (2, "20, 20")):
+        run = run_scene(wall(["Conductivity = 2"], cells, dim), centers)
+        share = run.model(PD)["effective conductivity"] / 2
+        check(abs(share - 1) > 0.01, f"{dim}D, cell centers: {share:.4f} of the conductivity")
+        check("'Boundary treatment = auto'" in run.stdout + run.stderr and "Nodes = vertices" in run.stdout + run.stderr,
+              f"{dim}D, cell centers: a note says what it costs and what to do")
+        check(abs(run_scene(wall(["Conductivity = 2"], cells, dim), {"Domain/Nodes": "vertices"}).model(PD)["effective conductivity"] - 2) < 1e-6,
+              f"{dim}D: the advice is taken and right")
+
+
+def moisture():
+    table = Comparison("Two layers of saturated concentrations 10 and 1, D = 1 in both")
+    layers = "  subsection Phases\n    set Regions = wet: 0.5 - x\n    set Saturated concentration = wet: 10\n{}  end"
+    for models, dim, cells in ((ALL, 2, "20, 6"), (PD, 1, "20")):
+        for lines, more, expected in ((["Conductivity = 1", layers.format("")], "", 0.5), (["Diffusivity = 1", layers.format("")], "", 10 / 11),
+                                      (["Diffusivity = 7", layers.format("    set Diffusivity = wet: 1\n")], "", 10 / 17)):
+            text = wall([], cells, dim, models, "left: 1; right: 0", STEADY + f"subsection Output\n  set Probes = {'0.5' if dim == 1 else '0.5, 0'}\nend\n", "moisture")
+            run = run_scene(text.replace("subsection Material\n", "subsection Material\n" + "\n".join(
+                line if "subsection" in line else f"  set {line}" for line in lines)))
+            for model in run.summary["models"]:
+                place = (0.5,) if dim == 1 else (0.5, 0)
+                rows = run.rows(model, place)
+                table.add(f"{lines[0]}, {model}, {dim}D: wetness between", float(rows[-1]["value"]), expected, relative=1e-6)
+            check(("'Diffusivity'" in run.stdout + run.stderr) == lines[0].startswith("Conductivity"), f"{lines[0]}: the note says what is continuous")
+    end = 0.1
+    exact = finite_volumes(lambda x, u: np.where(x < 0.5, 10.0, 1.0), lambda x, u: np.where(x < 0.5, 10.0, 1.0), end, left=1.0, right=0.0, cells=100)
+    text = wall([], "40", 1, PD, "left: 1; right: 0", transient("auto", end), "moisture")
+    run = run_scene(text.replace("subsection Material\n", "subsection Material\n  set Diffusivity = 1\n" + layers.format("")))
+    for x, value in zip((0.25, 0.5, 0.75), exact):
+        table.add(f"transient, x = {x}", run.probe(PD, (x,), time=end), value, absolute=4e-3)
+    check(run.summary["moisture counts"] == "mass", "with Diffusivity flows and amounts are masses")
+    table.show()
+
+
+def steady():
+    for end, told in (("0.01", False), ("2", True)):
+        run = run_scene(wall(["Conductivity = 1"], "20", 1, "finite elements, peridynamics", more=f"subsection Time\n  set End time = {end}\nend\n"))
+        for model in run.summary["models"]:
+            found = run.model(model).get("effective conductivity")
+            check((found is not None) == told, f"t = {end}, {model}: effective conductivity {found}")
+            if told:
+                check(abs(found - 1) < 2e-3, f"t = {end}, {model}: effective conductivity {found}")
+
+
+if __name__ == "__main__":
+    parts = {"material": material, "fall_back": fall_back, "moisture": moisture, "steady": steady}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish()
