@@ -218,7 +218,9 @@ namespace PeriDeal
               lowest  = std::min(lowest, data->lowest);
               highest = std::max(highest, data->highest);
             }
-        least = std::min(least, n_around / piece.cells.size()); // 0 ends it
+        if (n_around == 0.)
+          return 0.;
+        least = std::min(least, n_around / piece.cells.size());
       }
     const double whole = families.nodes().lattice()->cell_volume(),
                  most  = lowest * offset.weight * std::min(volumes, least * whole * whole);
