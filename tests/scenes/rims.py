@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Loads on round and turned holes of lattices are those of the true rim, not of the cells' stairs.
+
+    rims.py heat
+"""
+
+import math
+import sys
+
+from scene_test import check, check_close, finish, run_scene
+
+FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
+ALL = f"{FE}, {PD}, {COUPLED}"
+BC = "Boundary conditions/"
+
+HEAT = """
+set Dimension = 2
+set Models    = finite elements, peridynamics, coupled
+subsection Domain
+  set Lower corner = -4, -4
+  set Upper corner = 4, 4
+  set Cells        = 32, 32
+  set Holes        = circle: 0, 0, 1
+end
+subsection Boundary conditions
+  set Dirichlet = left: 0; right: 0; top: 0; bottom: 0
+  set Flux      = hole: 1
+end
+subsection Coupling
+  set Zone = 1.5 - sqrt(x^2 + y^2)
+end
+subsection Time
+  set Steady = true
+end
+subsection Output
+  set Fields = none
+end
+"""
+
+
+def polygon(n, radius, degrees, center=(0, 0)):
+    """The text of a hole and its perimeter."""
+    corners = [(center[0] + radius * math.cos(math.radians(degrees + 360 * k / n)), center[1] + radius * math.sin(math.radians(degrees + 360 * k / n))) for k in range(n)]
+    return "polygon: " + ", ".join(f"{x:.16g}, {y:.16g}" for x, y in corners), 2 * n * radius * math.sin(math.pi / n)
+
+
+def flows(what, overrides, right, side="hole", relative=1e-9, **more):
+    run = run_scene(HEAT, overrides, **more)
+    for model in run.summary["models"]:
+        check_close(run.model(model)["boundary flux"][side], right, relative=relative, what=f"{what}, {model}: flux through the rim")
+    return run
+
+
+def heat():
+    """What enters is the flux times the length of the rim inside the body, whatever its shape and place."""
+    flows("circle", {}, 2 * math.pi)
+    flows("circle, cell centres", {"Domain/Nodes": "cell centers", "Models": f"{FE}, {PD}"}, 2 * math.pi)
+    for degrees in (10, 30, 45, 75):
+        hole, perimeter = polygon(4, math.sqrt(2), degrees)
+        flows(f"square turned by {degrees - 45} degrees", {"Domain/Holes": hole}, perimeter)
+    flows("the hole with entries of its own", {"Domain/Holes": "", "Domain/Shape": "plate with hole", "Domain/Hole center": "0, 0", "Domain/Hole radius": "1",
+                                               "Domain/Hole shape": "square", "Domain/Hole angle": "30"}, 8)
+    turned = [(2 * c - 0.7 * s, 2 * s + 0.7 * c) for c, s in [(math.cos(0.3), math.sin(0.3))]][0]
+    other = [(2 * c + 0.7 * s, 2 * s - 0.7 * c) for c, s in [(math.cos(0.3), math.sin(0.3))]][0]
+    flows("rectangle turned", {"Domain/Holes": f"polygon: {turned[0]}, {turned[1]}, {-other[0]}, {-other[1]}, {-turned[0]}, {-turned[1]}, {other[0]}, {other[1]}"}, 10.8)
+    flows("several", {"Domain/Holes": "circle: -1.5, 0.3, 0.8 ; circle: 1.5, 0, 0.9 ; rectangle: -0.5, 2, 0.5, 3"}, 2 * math.pi * 1.7 + 4)
+    flows("half a circle at the edge", {"Domain/Holes": "circle: 4, 0, 1", BC + "Dirichlet": "left: 0"}, math.pi)
+    flows("a quarter at a corner", {"Domain/Holes": "circle: -4, -4, 1.5", BC + "Dirichlet": "right: 0"}, 0.75 * math.pi)
+    flows("two circles in one", {"Domain/Holes": "circle: -0.5, 0, 1 ; circle: 0.5, 0, 1"}, 8 * math.pi / 3)
+    flows("a rectangle on faces", {"Domain/Holes": "rectangle: -1, -0.5, 1.5, 0.5"}, 7, relative=1e-12)
+    flows("part of the rim", {BC + "Parts": "half: hole if x + y > 0", BC + "Flux": "half: 1"}, math.pi, side="half")
+    # h int (1 - u) with u as it is: the heat through the rim leaves through the sides.
+    run = run_scene(HEAT, {BC + "Flux": "", BC + "Convection": "hole: 0.5, 1"})
+    for model in run.summary["models"]:
+        flow = run.model(model)["boundary flux"]
+        check_close(flow["hole"], -sum(flow[side] for side in ("left", "right", "top", "bottom")), relative=1e-6, what=f"{model}: balance with convection")
+        # In series: 1/(h 2 pi) and the resistance of the square with a hole, log(1.0787 b / r) / (2 pi).
+        check_close(flow["hole"], 2 * math.pi / (2 + math.log(1.0787 * 4)), relative=0.02, what=f"{model}: flow by convection")
+    flows("bore", {"Dimension": "3", "Domain/Lower corner": "-2, -2, 0", "Domain/Upper corner": "2, 2, 1.5", "Domain/Cells": "12, 12, 4", "Coupling/Zone": "1.7 - sqrt(x^2 + y^2)"},
+          3 * math.pi, ranks=2)
+    flows("part of a bore", {"Dimension": "3", "Domain/Lower corner": "-2, -2, 0", "Domain/Upper corner": "2, 2, 1.5", "Domain/Cells": "12, 12, 4", "Models": f"{FE}, {PD}",
+                             BC + "Parts": "deep: hole if z < 0.7", BC + "Flux": "deep: 1"}, 1.4 * math.pi, side="deep")
+
+
+if __name__ == "__main__":
+    parts = {function.__name__: function for function in (heat,)}
+    for name in sys.argv[1:] or parts:
+        parts[name]()
+    finish()
