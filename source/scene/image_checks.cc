@@ -433,7 +433,7 @@ namespace PeriDeal
           "peridynamics: in " + std::to_string(n_places) +
           " places of rows and columns bonds reach across a void of up to " +
           std::to_string(widest) + (widest == 1 ? " cell" : " cells") +
-          ", which is no gap to them. 'Bonds across voids = auto' (section 'Peridynamics') makes it one, and so does a smaller horizon or more cells ('Cells per pixel' in section 'Domain').");
+          ", which is no gap to them. 'Bonds across voids = cut' (section 'Peridynamics') makes it one, and so does a smaller horizon or more cells ('Cells per pixel' in section 'Domain').");
     }
   } // namespace
 

@@ -150,7 +150,7 @@ namespace PeriDeal
       const auto      is_one   = [](const MaterialProperty &property) {
         return property.is_constant() && property.value(Point<dim>()) == 1.;
       };
-      if (material.saturated_concentration.is_constant() || !material.text("Diffusivity").empty() ||
+      if (material.saturated_concentration.is_constant() || // with 'Diffusivity' it is the density
           !is_one(material.density) || !is_one(material.heat_capacity))
         return;
       scene.domain.notes.push_back(
