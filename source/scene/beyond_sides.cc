@@ -195,9 +195,20 @@ namespace PeriDeal
   template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body)
   {
-    return body.domain.has_lattice() && !body.domain.has_extra_layers() &&
+    return takes_steps(body) && body.domain.has_lattice() && !body.domain.has_extra_layers() &&
            body.peridynamics.surface_correction == SurfaceCorrection::automatic &&
            hindrance_of_fictitious_nodes(body).empty();
+  }
+
+
+  template <int dim>
+  bool families_end(const BodyParameters<dim> &body)
+  {
+    const SurfaceCorrection correction = body.peridynamics.surface_correction;
+    if (correction != SurfaceCorrection::automatic)
+      return correction == SurfaceCorrection::none;
+    return !hindrance_of_fictitious_nodes(body).empty() ||
+           (body.domain.has_lattice() && body.domain.has_voids() && !completes_at_surfaces(body));
   }
 
 
