@@ -158,7 +158,7 @@ def bend():
 
 
 def mesh():
-    """The plate on a Gmsh file of the box's cells breaks as that on the box: families go on beyond the sides that are pulled, and on meshes are those of the lattice but for partial volumes."""
+    """The plate on a Gmsh file of the box's cells breaks as that on the box: families go on beyond the sides that are pulled; free sides of the mesh are stiffer."""
     table = Comparison("Plate with a crack, m = 3, on a mesh over that on a lattice")
     scene = open(os.path.join(SOURCE_DIR, "prm/fracture/centre_crack.prm"), encoding="utf-8").read()
     for line in ("  set Horizon ratio   = 4\n", "  set Lower corner = -0.5, -1\n", "  set Upper corner = 0.5, 1\n", "  set Cells        = 80, 160\n"):
@@ -177,11 +177,11 @@ def mesh():
             rows = history(run, f"force on {side} in y", BROKEN)
             first = next(k for k, row in enumerate(rows) if row[2] > 0)
             found.append((rows[first][0], max(row[1] for row in rows), rows[first - 1][1], rows[-1][2]))
-        for name, on_box, on_mesh, bound in zip(("time of the first break", "strength", "force before"), found[0], found[1], (1e-12, 2.1e-3, 2.2e-3)):
-            table.add(name, on_mesh / on_box, 1, absolute=bound)  # measured: 0, 1.3e-3, 1.4e-3
+        for name, on_box, on_mesh, bound in zip(("time of the first break", "strength", "force before"), found[0], found[1], (1e-12, 0.08, 0.06)):
+            table.add(name, on_mesh / on_box, 1, absolute=bound)  # measured: 0, 6.0e-2, 3.9e-2: free sides of the mesh are not continued, as its note says
         check_close(found[2], found[1], relative=1e-9, what="two processes")
         check(found[0][3] > 300, f"the plate breaks: {found[0][3]} bonds")
-        check("beyond the whole boundary" in runs[0].model(PD)["settings"]["surface correction"], "families go on")
+        check("beyond sides with conditions" in runs[0].model(PD)["settings"]["surface correction"], "families go on")
     table.show()
 
 

@@ -53,6 +53,11 @@ namespace PeriDeal
   bool completes_mesh(const BodyParameters<dim> &body);
 
 
+  /** Then: beyond this one, of those that are no planes of symmetry. Not collective. */
+  template <int dim>
+  bool goes_on_beyond(const BodyParameters<dim> &body, const dealii::types::boundary_id side);
+
+
   /**
    * With `Surface correction = auto`: why no families can go on; empty where they can, and with
    * other corrections.
