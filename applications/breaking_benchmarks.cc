@@ -40,6 +40,7 @@ namespace PeriDeal
              last + "; bottom: 0, -0.7" + last + "\nend\nsubsection Cracks\nset " + crack +
              "\nend\nsubsection Peridynamics\nset Horizon ratio = " + m +
              "\nset Operator form = " + form +
+             "\nset Surface correction = none" // as LAMMPS has it
              "\nend\nsubsection Elasticity\nset Solver = dynamics\nset Kinematics = " + kinematics +
              "\nend\nsubsection Time\nset End time = 1\nend\n";
     }

@@ -40,7 +40,7 @@ namespace PeriDeal
         Timings::Scope scope(this->timings, "operator");
         states                       = std::make_unique<StateOperator<dim>>(*node_set, scene);
         const SolidBonds<dim> &bonds = states->bonds();
-        if (!completes_at_surfaces(scene))
+        if (families_end(scene))
           stiffer = surface_stiffness(bonds.families, bonds.laws, bonds.rows, bonds.beyond.get());
       }
 

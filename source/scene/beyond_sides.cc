@@ -175,7 +175,9 @@ namespace PeriDeal
     if (automatic && (!body.domain.has_lattice() || !hindrance_of_fictitious_nodes(body).empty()))
       return beyond;
     const auto &conditions = body.boundary_conditions;
-    beyond.fill(automatic && takes_steps(body) ? BeyondSide::in_part : BeyondSide::continued);
+    beyond.fill(!automatic || !takes_steps(body) ? BeyondSide::continued :
+                completes_at_surfaces(body)      ? BeyondSide::in_part :
+                                                   BeyondSide::nothing);
     const auto set = [&](const types::boundary_id side, const BeyondSide value) {
       if (side < 2 * dim)
         beyond[side] = value;
@@ -195,9 +197,22 @@ namespace PeriDeal
   template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body)
   {
-    return body.domain.has_lattice() && !body.domain.has_extra_layers() &&
+    return takes_steps(body) && body.domain.has_lattice() && !body.domain.has_extra_layers() &&
            body.peridynamics.surface_correction == SurfaceCorrection::automatic &&
            hindrance_of_fictitious_nodes(body).empty();
+  }
+
+
+  template <int dim>
+  bool families_end(const BodyParameters<dim> &body)
+  {
+    const SurfaceCorrection correction = body.peridynamics.surface_correction;
+    if (correction != SurfaceCorrection::automatic)
+      return correction == SurfaceCorrection::none;
+    return !hindrance_of_fictitious_nodes(body).empty() ||
+           (completes_mesh(body) && takes_steps(body)) ||
+           (body.domain.has_lattice() && !completes_at_surfaces(body) &&
+            (takes_steps(body) || body.domain.has_voids()));
   }
 
 
@@ -211,12 +226,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side)
+  {
+    if (!takes_steps(body))
+      return true;
+    const auto &conditions = body.boundary_conditions;
+    for (const auto *const list : {&conditions.displacement, &conditions.traction})
+      for (const VectorCondition &condition : *list)
+        if (conditions.side_of(condition.id) == side)
+          return true;
+    return false;
+  }
+
+
+  template <int dim>
   std::string automatic_correction(const BodyParameters<dim> &body)
   {
     if (const std::string reason = hindrance_of_fictitious_nodes(body); !reason.empty())
       return "none, because " + reason;
     if (completes_mesh(body))
-      return "fictitious nodes beyond the whole boundary";
+      return takes_steps(body) ? "fictitious nodes beyond sides with conditions" :
+                                 "fictitious nodes beyond the whole boundary";
     const auto               beyond = beyond_sides(body);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -231,7 +261,9 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                 \
-  template bool                            completes_at_surfaces(const BodyParameters<dim> &);    \
+  template bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side);   \
+  template bool completes_at_surfaces(const BodyParameters<dim> &);                               \
+  template bool families_end(const BodyParameters<dim> &);                                        \
   template std::string                     note_on_held_rows(const BodyParameters<dim> &body);    \
   template std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);         \
   template bool                            completes_mesh(const BodyParameters<dim> &body);       \

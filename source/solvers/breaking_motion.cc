@@ -4,14 +4,14 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/progress.h>
-include<perideal / solvers / breaking_motion.h>
+#include <perideal/solvers/breaking_motion.h>
 #include <perideal/solvers/step_tools.h>
 
 #include <cmath>
 
-  namespace PeriDeal
+namespace PeriDeal
 {
-  BreakingMotion::BreakingMotion(ElasticOperator & op, const double share)
+  BreakingMotion::BreakingMotion(ElasticOperator &op, const double share)
     : op(op)
     , share(share)
     , inverse_mass(inverse_capacity(op))
@@ -49,7 +49,7 @@ include<perideal / solvers / breaking_motion.h>
   }
 
 
-  unsigned int BreakingMotion::run(Vector & u, const double t)
+  unsigned int BreakingMotion::run(Vector &u, const double t)
   {
     constexpr double damping    = 0.011; // rate times stable step: a wave passes a horizon in two
     constexpr unsigned int wait = 54;    // stable steps without a break

@@ -32,12 +32,17 @@ namespace PeriDeal
 
 
   /**
-   * Families of an elastic body on a lattice that end elsewhere, at voids and in motion at free
-   * sides, are completed by their own bonds (FamilyCompletion), with `Surface correction = auto`.
-   * Not collective.
+   * In motion and where bonds may break, families of an elastic body on a lattice that end
+   * elsewhere, at voids and free sides, are completed by their own bonds (FamilyCompletion), with
+   * `Surface correction = auto`. Not collective.
    */
   template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body);
+
+
+  /** Some families end where the body does, and nothing makes up for it. Not collective. */
+  template <int dim>
+  bool families_end(const BodyParameters<dim> &body);
 
 
   /**
@@ -46,6 +51,11 @@ namespace PeriDeal
    */
   template <int dim>
   bool completes_mesh(const BodyParameters<dim> &body);
+
+
+  /** Then: beyond this one, of those that are no planes of symmetry. Not collective. */
+  template <int dim>
+  bool goes_on_beyond(const BodyParameters<dim> &body, const dealii::types::boundary_id side);
 
 
   /**

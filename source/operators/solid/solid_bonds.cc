@@ -26,13 +26,15 @@ namespace PeriDeal
     {
       if (completes_mesh(body))
         {
-          auto beyond =
-            std::make_unique<FictitiousBonds<dim>>(families,
-                                                   boundary_images(
-                                                     families.nodes(),
-                                                     body.boundary_conditions.symmetry,
-                                                     [](const types::boundary_id) { return true; },
-                                                     families.weights().reach()));
+          const auto goes_on = [&](const types::boundary_id side) {
+            return goes_on_beyond(body, side);
+          };
+          auto beyond = std::make_unique<FictitiousBonds<dim>>(
+            families,
+            boundary_images(families.nodes(),
+                            body.boundary_conditions.symmetry,
+                            goes_on,
+                            families.weights().reach()));
           beyond->add_weights(weighted);
           return beyond;
         }

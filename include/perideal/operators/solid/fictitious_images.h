@@ -13,7 +13,7 @@ namespace PeriDeal
 {
   /**
    * The fictitious nodes beyond the sides of a solid to which nodes of the body have bonds, and
-   * those nodes of the body that count more in the families of others (FamilyCompletion). The
+   * those of its nodes that count more in the families of others (FamilyCompletion). The
    * displacement of each, u_g = P u, is linear in that of nodes of the body; the force on it is
    * passed on to them through P^T.
    *
