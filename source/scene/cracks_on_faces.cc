@@ -77,28 +77,56 @@ namespace PeriDeal
     }
 
 
+    /** Some side or part is moved or loaded by formulas of the place. */
+    bool varies_along_sides(const Scene<2> &scene)
+    {
+      const auto &conditions = scene.boundary_conditions;
+      for (const auto *const list : {&conditions.displacement, &conditions.traction})
+        for (const VectorCondition &condition : *list)
+          for (const auto &value : condition.values)
+            if (value && value->depends_on_position())
+              return true;
+      return false;
+    }
+
+
+    /** Some crack begins at a side of the body. */
+    bool reaches_side(const Scene<2> &scene)
+    {
+      for (const auto &crack : scene.cracks.cracks)
+        for (const Point<2> &end : crack)
+          for (unsigned int d = 0; d < 2; ++d)
+            if (const double slack = 1e-9 * (scene.domain.upper[d] - scene.domain.lower[d]);
+                end[d] < scene.domain.lower[d] + slack || end[d] > scene.domain.upper[d] - slack)
+              return true;
+      return false;
+    }
+
+
     /** What is computed can have cracks on faces and loses nothing by it. */
     bool can_lie_on_faces(const Scene<2> &scene)
     {
-      const Domain<2>         &domain   = scene.domain;
-      const Cracks<2>         &cracks   = scene.cracks;
-      const SurfaceCorrection &by       = scene.peridynamics.surface_correction;
-      const bool               elements = runs(scene, ModelKind::finite_elements),
-                 coupled                = runs(scene, ModelKind::coupled),
-                 bonds                  = coupled || runs(scene, ModelKind::peridynamics);
+      const Domain<2>        &domain     = scene.domain;
+      const Cracks<2>        &cracks     = scene.cracks;
+      const SurfaceCorrection correction = scene.peridynamics.surface_correction;
+      const bool              coupled    = runs(scene, ModelKind::coupled);
       if (!scene.deforms || cracks.cracks.empty() || cracks.change() ||
           cracks.through_tips == ThroughTips::in_part || !domain.is_box() || domain.has_voids() ||
-          domain.has_extra_layers() || domain.coarsening.times > 0 || (!elements && !coupled) ||
-          scene.material.fracture_energy || scene.material.critical_stretch ||
-          scene.elasticity.computes_temperature)
+          domain.has_extra_layers() || domain.coarsening.times > 0 ||
+          scene.material.fracture_energy || scene.material.critical_stretch)
         return false;
-      // There faces do not press on each other, and factors beside cracks and moving bonds are
-      // measured on lattices without doubled nodes.
-      return !bonds ||
-             (!scene.elasticity.contact && !domain.has_nodes_at_centers() &&
-              scene.elasticity.is_static() && !scene.elasticity.has_full_kinematics() &&
-              !scene.elasticity.is_bond_based() && (!coupled || scene.coupling.exchanges()) &&
-              (by == SurfaceCorrection::automatic || by == SurfaceCorrection::none));
+      // Of two nodes at one place neither knows of which side a formula is meant to be.
+      if (!scene.elasticity.temperature_change.is_constant() ||
+          scene.elasticity.computes_temperature ||
+          (varies_along_sides(scene) && reaches_side(scene)))
+        return false;
+      if (!coupled) // peridynamics alone is better off between rows of nodes
+        return runs(scene, ModelKind::finite_elements) && !runs(scene, ModelKind::peridynamics);
+      // Faces do not press on each other there, and factors beside cracks find nothing.
+      return !scene.elasticity.contact && !domain.has_nodes_at_centers() &&
+             scene.elasticity.is_static() && scene.coupling.exchanges() &&
+             !scene.elasticity.has_full_kinematics() &&
+             (correction == SurfaceCorrection::automatic || correction == SurfaceCorrection::none);
     }
 
 
@@ -165,7 +193,7 @@ namespace PeriDeal
     }
 
 
-    /** Moves ends to the nearest vertices. Returns the longest way, in cells. */
+    /** Moves ends to the nearest vertices. Returns the longest way as a part of its crack. */
     double move_ends(Scene<2> &scene)
     {
       const Domain<2>   &domain = scene.domain;
@@ -173,14 +201,16 @@ namespace PeriDeal
       double             most   = 0.;
       for (auto &crack : scene.cracks.cracks)
         {
-          const unsigned int along = 1 - *crossed_axis(crack);
+          const unsigned int along  = 1 - *crossed_axis(crack);
+          const double       length = std::abs(crack[1][along] - crack[0][along]);
           for (Point<2> &end : crack)
             {
               const double place = (end[along] - domain.lower[along]) / h[along],
                            moved = std::round(place);
-              if (place <= 0. || place >= domain.cells[along] || std::abs(place - moved) < same)
+              if (place <= 0. || place >= domain.cells[along])
                 continue;
-              most       = std::max(most, std::abs(place - moved));
+              if (std::abs(place - moved) > same)
+                most = std::max(most, std::abs(place - moved) * h[along] / length);
               end[along] = domain.lower[along] + moved * h[along];
             }
         }
@@ -219,18 +249,17 @@ namespace PeriDeal
                                      std::optional<std::array<unsigned int, 2>>();
         if (!cells || !all_stay(scene, *cells))
           return;
-        const bool others        = *cells != scene.domain.cells;
-        scene.domain.cells       = *cells;
-        scene.cracks.mesh        = CrackMesh::faces;
-        const double       moved = move_ends(scene);
-        const Tensor<1, 2> h     = scene.domain.spacing();
+        const bool others  = *cells != scene.domain.cells;
+        scene.domain.cells = *cells;
+        scene.cracks.mesh  = CrackMesh::faces;
+        const double moved = move_ends(scene);
         scene.domain.notes.push_back(
           "the cracks run along the axes and are cut into the mesh ('Mesh = faces' in section 'Cracks')" +
           (others ? ": 'Cells' in section 'Domain' are taken as " + std::to_string((*cells)[0]) +
                       ", " + std::to_string((*cells)[1]) + ", with which they lie on faces" :
                     std::string()) +
           (moved > 0. ? "; ends that lie on no vertex are moved to the nearest, by at most " +
-                          number_text(moved * std::max(h[0], h[1])) :
+                          rounded_text(100. * moved) + " % of the crack's length" :
                         std::string()) +
           ". 'Mesh = removed' keeps the mesh as given.");
       }

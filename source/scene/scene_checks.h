@@ -13,8 +13,8 @@
 namespace PeriDeal
 {
   /**
-   * `Mesh = auto` of solids in 2D with elements: cracks along the axes are cut into the mesh, for
-   * which `Cells` may change by some percent, and their ends by half a cell; others are removed
+   * `Mesh = auto` of solids in 2D with elements: cracks along the axes are cut into the mesh,
+   * for which `Cells` may change by some percent, and their ends by half a cell; others are removed
    * with their cells. To be called before keep_cracks_off_nodes().
    */
   template <int dim>

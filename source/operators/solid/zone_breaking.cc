@@ -488,9 +488,9 @@ namespace PeriDeal
   template <int dim>
   std::size_t ZoneBreaking<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() +
-           critical.memory_consumption() + thermal.capacity() * sizeof(double) +
-           cells.memory_consumption() + broken.capacity() * sizeof(Break);
+    return bonds.memory_consumption() + critical.memory_consumption() +
+           thermal.capacity() * sizeof(double) + cells.memory_consumption() +
+           broken.capacity() * sizeof(Break);
   }
 
 

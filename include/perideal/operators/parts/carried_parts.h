@@ -16,11 +16,11 @@
 namespace PeriDeal
 {
   /**
-   * Where cells of a lattice that cracks cut are removed: what lies of them on each side of a crack
-   * is carried by the next whole cell on that side, in the direction across the crack: its fields
-   * go on to the crack (aggregated elements: Badia, Verdugo and Martin 2018). So a crack lies where
-   * it is, linear fields stay exact, and there are no unknowns but those at vertices. Ahead of a
-   * tip the fields of a cut cell are its own.
+   * Where cells of a lattice that cracks cut are removed: what lies of them on each side of a
+   * crack is carried by the next whole cell on that side, in the direction across the crack: its
+   * fields go on to the crack (aggregated elements: Badia, Verdugo and Martin 2018). So a crack
+   * lies where it is, linear fields stay exact, and there are no unknowns but those at vertices.
+   * Ahead of a tip the fields of a cut cell are its own.
    *
    * Cells that cracks cut across different directions, and parts that no whole cell comes after,
    * are lost. What a cell carries follows from the cracks and the lattice alone, so that no process

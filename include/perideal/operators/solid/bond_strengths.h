@@ -14,8 +14,8 @@ namespace PeriDeal
   /**
    * Critical stretches of bonds: the smaller one of both ends, or, where the material on the
    * straight way between them is weaker than at both, that of a bond whose ends have the fracture
-   * energy (or critical stretch) of the weakest place: the smaller s_i sqrt(G_min/G_i) of both
-   * ends. So a layer between two rows of nodes takes its own energy to break, however thin it is.
+   * energy (critical stretch) of the weakest place: the smaller s_i sqrt(G_min/G_i) of both ends.
+   * So a layer between two rows of nodes takes its own energy to break, however thin it is.
    *
    * Ways are looked at where the material is seen to be weaker between a node of the family and the
    * next ones, in 32 places each.
