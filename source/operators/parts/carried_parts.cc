@@ -26,7 +26,7 @@ namespace PeriDeal
   bool CarriedParts<dim>::apply_to(const BodyParameters<dim> &body)
   {
     return dim > 1 && body.domain.has_lattice() && !body.cracks.cracks.empty() &&
-           !body.cracks.on_faces();
+           !body.cracks.on_faces() && body.cracks.tips.empty();
   }
 
 

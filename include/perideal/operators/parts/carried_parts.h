@@ -32,7 +32,7 @@ namespace PeriDeal
   public:
     using Cell = typename dealii::Triangulation<dim>::cell_iterator;
 
-    /** There are such cracks and a lattice. */
+    /** There are such cracks, which do not grow, and a lattice. */
     static bool apply_to(const BodyParameters<dim> &body);
 
     /** The domain must outlive this. */
