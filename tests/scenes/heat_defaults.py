@@ -43,6 +43,9 @@ STEADY = "subsection Time\n  set Steady = true\nend\n"
 
 
 def wall(material, cells="20, 20", dim=2, models=PD, sides="left: 0; right: 1", more=STEADY, physics="heat"):
+    """A body of unit length whose cells are squares or cubes."""
+    n = [int(word) for word in cells.split(",")]
+    more = "subsection Domain\n  set Upper corner = " + ", ".join(str(k / n[0]) for k in n) + "\nend\n" + more
     return WALL.format(dim=dim, physics=physics, models=models, cells=cells, sides=sides, more=more,
                        material="\n".join(f"  set {line}" for line in material))
 

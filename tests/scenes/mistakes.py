@@ -291,7 +291,6 @@ def scene_mistakes(folder):
         ("probe outside", {"Output/Probes": "0.5,0.5 ; 0.5,1.5"}, ["'Probes'", "(0.5, 1.5)", "outside"]),
         ("line of one point", {"Output/Line": "0,0 ; 1,1 ; 1"}, ["'Line'", "2 or more"]),
         # time
-        ("write time beyond the end", {"Output/Write at": "0.001, 0.5"}, ["'Write at'", "0.5", "'End time'"]),
         ("steady without a level", {**STEADY, "Boundary conditions/Dirichlet": ""}, ["'Steady'", "not determined"]),
         ("steady with t", {**STEADY, "Boundary conditions/Dirichlet": "top: t; bottom: 0"}, ["'Dirichlet'", "depends on t"]),
         ("unknown exact solution", {"Reference/Solution": "bobaru 2013 table 1"}, ["'Solution'", "'Reference'"]),

@@ -114,7 +114,7 @@ namespace PeriDeal
                   cell,
                   a,
                   b,
-                  [] { return 1.; },
+                  [](const unsigned int, const unsigned int) { return 1.; },
                   &crossed);
                 if (!crossed.empty() && above(cell->vertex(a)) && !above(cell->vertex(b)))
                   expected -= own.stiffness(a, b) * (cell->vertex(a)[1] - cell->vertex(b)[1]);

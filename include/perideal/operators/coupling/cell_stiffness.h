@@ -71,7 +71,8 @@ namespace PeriDeal
   {
     static const std::vector<CornerValues> shapes = [] {
       std::vector<CornerValues> list;
-      for (const dealii::Point<dim> &q : dealii::QGauss<dim>(2).get_points())
+      const dealii::QGauss<dim> points(2);
+      for (const dealii::Point<dim> &q : points.get_points())
         list.push_back(shape_values(q));
       return list;
     }();
