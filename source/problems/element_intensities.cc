@@ -8,11 +8,9 @@
 
 #include <perideal/analysis/bond_intensities.h>
 #include <perideal/laws/elasticity.h>
-#include <perideal/operators/parts/carried_parts.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace PeriDeal
 {
@@ -137,32 +135,11 @@ namespace PeriDeal
                QGauss<dim - 1>(dofs.get_fe().degree + more_points_in_rings(dim)),
                needed_in_rings() | update_normal_vectors)
         , nodes(dofs.get_fe().n_dofs_per_cell())
-      {
-        if (bonds || !CarriedParts<dim>::apply_to(scene))
-          return;
-        carried.emplace(scene.domain);
-        carried->set(scene.cracks.pieces(elements.crack_time()));
-      }
+      {}
 
       template <typename Integral>
       void add(const Cell &cell, std::vector<Integral> &ends)
       {
-        if (carried)
-          if (const auto rule =
-                carried->region(cell, cell->get_fe().degree + more_points_in_rings(dim)))
-            {
-              if (rule->size() == 0)
-                return;
-              FEValues<dim> of_region(cell->get_fe(), *rule, needed_in_rings());
-              of_region.reinit(cell);
-              visit(cell, of_region, [&](const RingPoint<dim> &point, const unsigned int) {
-                for (auto &end : ends)
-                  end.add(point);
-              });
-              return;
-            }
-        if (elements.cut_cells()[cell->active_cell_index()])
-          return;
         inside.reinit(cell);
         visit(cell, inside, [&](const RingPoint<dim> &point, const unsigned int) {
           for (auto &end : ends)
@@ -171,7 +148,7 @@ namespace PeriDeal
         // Beside a crack that bonds know there is a body up to the crack.
         for (const unsigned int face : cell->face_indices())
           {
-            if (carried || cell->at_boundary(face) || !cell->neighbor(face)->is_active() ||
+            if (cell->at_boundary(face) || !cell->neighbor(face)->is_active() ||
                 !elements.cut_cells()[cell->neighbor(face)->active_cell_index()])
               continue;
             edge.reinit(cell, face);
@@ -210,7 +187,6 @@ namespace PeriDeal
       FEValues<dim>                        inside;
       FEFaceValues<dim>                    edge;
       std::vector<types::global_dof_index> nodes;
-      std::optional<CarriedParts<dim>>     carried; // by cells beside those that are removed
     };
 
 
@@ -251,14 +227,15 @@ namespace PeriDeal
     RingCells<dim> cells(scene, elements, dofs, u, bonds, t);
     u.update_ghost_values();
     for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && std::any_of(ends.begin(), ends.end(), [&](const auto &end) {
-            return end.reaches(cell->center(), 4. * cell->diameter()); // carried parts are beyond
+      if (cell->is_locally_owned() && !elements.cut_cells()[cell->active_cell_index()] &&
+          std::any_of(ends.begin(), ends.end(), [&](const auto &end) {
+            return end.reaches(cell->center(), cell->diameter());
           }))
         cells.add(cell, ends);
     u.set_ghost_state(false);
     for (auto &end : ends)
       list.push_back(end.result(dofs.get_communicator()));
-    if (!bonds || scene.cracks.on_faces())
+    if (scene.cracks.on_faces())
       for (StressIntensity &found : list)
         take_amount_of_j(scene, found);
     return list;

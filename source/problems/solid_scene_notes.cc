@@ -22,6 +22,16 @@ namespace PeriDeal
       return scene.material.fracture_energy || scene.material.critical_stretch;
     }
 
+
+    /**
+     * Of the end of a crack along an axis: how much farther than it the cells go that it takes
+     * away, in cells. A cell goes from its middle on.
+     */
+    double beyond_tip(const double place, const bool upwards)
+    {
+      const double part = place - std::floor(place), here = upwards ? part : 1. - part;
+      return here < 0.5 ? -here : 1. - here;
+    }
   } // namespace
 
 
@@ -61,6 +71,53 @@ namespace PeriDeal
       number_text(poisson) + " that takes almost any force: " + rounded_text(n) +
       " cells across make the body up to " + rounded_text(stiffer) +
       " times too stiff in bending. 'Degree = 2' in section 'Finite elements' does not lock.");
+  }
+
+
+  template <int dim>
+  void note_tips_in_cells(const Scene<dim> &scene, std::vector<std::string> &notes)
+  {
+    constexpr double tolerable = 0.1; // of a cell
+    if constexpr (dim == 2)
+      {
+        const auto &cracks = scene.cracks;
+        if (!runs(scene, ModelKind::finite_elements) || cracks.mesh != CrackMesh::removed ||
+            scene.domain.shape != Shape::box || !cracks.tips.empty() ||
+            scene.cuts_in_part_at_tips())
+          return;
+        const Tensor<1, 2> h     = scene.domain.spacing();
+        const Point<2>     lower = scene.domain.lower, upper = scene.domain.upper;
+        for (unsigned int k = 0; k < cracks.cracks.size(); ++k)
+          {
+            const Point<2>    &a = cracks.cracks[k][0], &b = cracks.cracks[k][1];
+            const unsigned int axis = std::abs(b[0] - a[0]) > std::abs(b[1] - a[1]) ? 0 : 1;
+            if (std::abs(b[1 - axis] - a[1 - axis]) > 1e-9 * h[1 - axis])
+              continue; // across the cells it is a staircase
+            const double from = std::max(lower[axis], std::min(a[axis], b[axis])),
+                         to   = std::min(upper[axis], std::max(a[axis], b[axis]));
+            double gained = 0., most = 0.;
+            for (const bool upwards : {false, true})
+              {
+                const double tip = upwards ? to : from;
+                if (tip <= lower[axis] + 1e-9 * h[axis] || tip >= upper[axis] - 1e-9 * h[axis])
+                  continue;
+                double beyond =
+                  beyond_tip((tip - lower[axis]) / h[axis] + (upwards ? 1e-9 : -1e-9), upwards);
+                gained += beyond;
+                most = std::max(most, std::abs(beyond));
+              }
+            if (most < tolerable)
+              continue;
+            const double share = 0.5 * gained * h[axis] / (to - from);
+            notes.push_back(
+              "crack " + std::to_string(k + 1) + " (section 'Cracks') ends " + rounded_text(most) +
+              " of a cell from the cells that it takes away ('Mesh = removed'): to finite elements it is " +
+              rounded_text(std::abs(gained) * h[axis]) + (gained > 0. ? " longer" : " shorter") +
+              " in all, which makes stress intensities " + rounded_text(100. * std::abs(share)) +
+              " % or more too " + (gained > 0. ? "large" : "small") +
+              ". 'Cells' in section 'Domain' with which its ends lie on edges of cells, or 'Mesh = faces', make up for it.");
+          }
+      }
   }
 
 
@@ -174,6 +231,7 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template void        note_locking(const Scene<dim> &, const double, std::vector<std::string> &); \
+  template void        note_tips_in_cells(const Scene<dim> &, std::vector<std::string> &);         \
   template void        note_slow_oblique_cracks(const Scene<dim> &, std::vector<std::string> &);   \
   template std::string note_on_few_bonds(const Scene<dim> &,                                       \
                                          const std::vector<FamilyMember<dim>> &);                  \

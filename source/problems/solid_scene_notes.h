@@ -23,6 +23,10 @@ namespace PeriDeal
   template <int dim>
   void note_locking(const Scene<dim> &scene, const double poisson, std::vector<std::string> &notes);
 
+  /** Ends of cracks inside the cells that they take away, or leave. */
+  template <int dim>
+  void note_tips_in_cells(const Scene<dim> &scene, std::vector<std::string> &notes);
+
   /** Cracks at an angle to the rows of nodes, from which bonds break in groups. */
   template <int dim>
   void note_slow_oblique_cracks(const Scene<dim> &scene, std::vector<std::string> &notes);

@@ -188,7 +188,7 @@ namespace PeriDeal
               corner[d] = (k >> d) % 2 == 1 ? domain.upper[d] : domain.lower[d];
             points.push_back(corner);
           }
-      constexpr std::size_t enough = 200;
+      constexpr std::size_t enough = 2000;
       if (points.size() <= enough)
         return points;
       std::vector<Point<dim>> some;

@@ -42,10 +42,11 @@ namespace PeriDeal
       for (unsigned int i = 0; i < iterate.locally_owned_size(); ++i)
         {
           const double way  = iterate.local_element(i) - last.local_element(i),
-                       size = std::abs(iterate.local_element(i)) + std::abs(last.local_element(i));
-          if (std::abs(way) > 1e-12 * size)
-            more.local_element(i) = (heat.local_element(i) - last_heat.local_element(i)) / way -
-                                    op.lumped_capacity().local_element(i);
+                       gain = heat.local_element(i) - last_heat.local_element(i),
+                       size =
+                         std::abs(heat.local_element(i)) + std::abs(last_heat.local_element(i));
+          if (way * gain > 0. && std::abs(gain) > 1e-10 * size) // above round-off
+            more.local_element(i) = gain / way - op.lumped_capacity().local_element(i);
         }
       keep(iterate, heat);
       return &more;

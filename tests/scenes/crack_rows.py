@@ -96,7 +96,7 @@ HELD = {"Material/Young modulus": "1", "Boundary conditions/Traction": "top: 0, 
 
 
 def edge_crack(cells, end, y=0.0, models=f"{FEM}, {COUPLED}"):
-    return run_scene(PULLED_STRIP, {**HELD, "Domain/Cells": cells, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Models": models})
+    return run_scene(PULLED_STRIP, {**HELD, "Domain/Cells": cells, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Cracks/Mesh": "removed", "Models": models})
 
 
 def intensity(run, model):

@@ -5,7 +5,7 @@
 References: quadratic elements with the crack on faces of 640 x 40 cells (flexure, K_II = 129.0; beams with a correction 130.3) and of 256 x 32 and 512 x 64 cells (double cantilever, K_I = 32.68 by J,
 whose square differs by 7e-4 between the two).
 
-    slender_cracks.py default | removed | ranks
+    slender_cracks.py default | ranks
 """
 
 import math
@@ -96,25 +96,10 @@ def default():
     table.show()
 
 
-def removed():
-    """The lattice as it is given: cells beside the crack carry what lies of those that it cuts, and a tip may end anywhere in one."""
-    table = Comparison("Cut cells removed")
-    keep = {"Models": FE, "Cracks/Mesh": "removed"}
-    for n in (30, 31, 61):
-        more = {**keep, "Cracks/Nodes on cracks": "left"}  # 30 cells: the crack lies on a row of nodes
-        table.add_limit(f"{n} cells: K_II of the flexure", abs(gap(flexure(n, more), FE, "II", K_FLEXURE)), 0.03)
-        table.add_limit(f"{n} cells: K_I of the cantilever", abs(gap(cantilever(n, more), FE, "I", K_CANTILEVER)), 0.03)
-    for part in (0.1, 0.4, 0.6, 0.9):
-        tip = 3 + part / 31
-        run = cantilever(31, {**keep, "Cracks/Segments": f"0,0 ; {tip!r},0"})
-        table.add_limit(f"tip at {part} of a cell: K_I of the cantilever", abs(gap(run, FE, "I", K_CANTILEVER * (1 + (tip - 3) / 3.32))), 0.03)
-    table.show()
-
-
 def ranks():
     """Two and four processes."""
     table = Comparison("Numbers of processes")
-    for more in ({"Models": FE}, {"Models": FE, "Cracks/Mesh": "removed"}):
+    for more in ({"Models": FE},):
         one = cantilever(15, more)
         for n in (2, 4):
             other = cantilever(15, more, ranks=n)
@@ -123,5 +108,5 @@ def ranks():
 
 
 if __name__ == "__main__":
-    {"default": default, "removed": removed, "ranks": ranks}[sys.argv[1]]()
+    {"default": default, "ranks": ranks}[sys.argv[1]]()
     finish()

@@ -12,6 +12,8 @@ import os
 import sys
 import tempfile
 
+import numpy as np
+
 from scene_test import Comparison, check, check_close, finish, run_scene
 
 FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
@@ -246,6 +248,23 @@ end
 """
 
 
+def enthalpies(n, end):
+    """Temperatures of the nodes of LATENT: the heat of each by small explicit steps, its temperature from that."""
+    bends = np.array([-10.0, -0.005, 0.005, 10.0])
+    heats = bends + 100 * np.clip(bends + 0.005, 0, 0.01)
+    h, steps = 1 / n, 8000
+    u = np.full(n + 1, -0.01)
+    u[0] = 1.0
+    heat = np.interp(u, bends, heats)
+    for _ in range(steps):
+        flow = np.diff(u) / h
+        heat[1:-1] += end / steps * np.diff(flow) / h
+        heat[-1] -= end / steps * flow[-1] / (h / 2)
+        u = np.interp(heat, heats, bends)
+        u[0] = 1.0
+    return u
+
+
 def refusals():
     for young in ("200e9", "200e15"):
         run = run_scene(BAR, {"Material/Young modulus": young})
@@ -256,13 +275,12 @@ def refusals():
     refused = run_scene(GRIP, {"Models": FE, BC + "Parts": "grip: point 0, 0.2 ; back: point 1, 0.2", BC + "Displacement": "grip: 0, 1e-3 ; back: 0, free"}, expect_error=True)
     check("rotation" in refused.stderr, "a body that may turn is refused as before")
 
-    # Explicit steps keep the heat whatever the capacity: their fronts are the reference.
-    explicit = run_scene(LATENT, {"Time/Stepper": "rkc2", "Time/Tolerance": "1e-5"})
+    exact = enthalpies(160, 0.1)
     for stepper in ("sdirk2", "bdf2", "crank nicolson"):
         run = run_scene(LATENT, {"Time/Stepper": stepper})
         for model in run.summary["models"]:
             for x in (0.1, 0.25, 0.4):
-                check_close(run.probe(model, (x,)), explicit.probe(model, (x,)), absolute=0.02, what=f"{stepper}, {model}: latent heat, T at {x}")
+                check_close(run.probe(model, (x,)), exact[round(160 * x)], absolute=2e-3, what=f"{stepper}, {model}: latent heat, T at {x}")
 
 
 SQUARE = """$MeshFormat

@@ -43,9 +43,6 @@ namespace PeriDeal
         data.stiffness.vmult(data.thermal, free);
         data.thermal_energy = 0.5 * (free * data.thermal);
       }
-    if (data.carried)
-      if (const auto rule = data.carried->region(cell, dofs.get_fe().degree + 1))
-        return data.assemble_region(*this, cell, *rule);
     double factor = cut_by_cracks.kept_of_removed(cell);
     factor *= crack_factors.of_cell(data.indices);
     if (factor == 1.)
@@ -117,11 +114,6 @@ namespace PeriDeal
   void ElasticElements<dim>::assemble()
   {
     cell_data = std::make_unique<CellData>(dofs.get_fe());
-    if (!zone_bonds && CarriedParts<dim>::apply_to(body))
-      {
-        cell_data->carried.emplace(body.domain);
-        cell_data->carried->set(this->history.pieces(this->cracks_of));
-      }
     stiffness.reinit(pattern());
     if (scales_beside_cracks())
       find_crack_factors();
@@ -247,11 +239,8 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::apply_change(const ChangeSet<dim> &change, const bool)
   {
-    const auto   pieces   = this->history.pieces(change.to);
-    const double of_cells = cell_data->carried ? cell_data->carried->reach() : 0.;
-    mend(change.cuts, of_cells, [&](const std::vector<Cell> *cells) {
-      if (cell_data->carried)
-        cell_data->carried->set(pieces);
+    const auto pieces = this->history.pieces(change.to);
+    mend(change.cuts, 0., [&](const std::vector<Cell> *cells) {
       if (cells)
         cut_by_cracks.set(*cells, pieces, 0.);
       else

@@ -8,10 +8,7 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
-#include <perideal/operators/parts/carried_parts.h>
 #include <perideal/operators/solid/elastic_elements.h>
-
-#include <optional>
 
 namespace PeriDeal
 {
@@ -46,11 +43,6 @@ namespace PeriDeal
     /** What a cell has without bonds and cracks; values and indices are those of the cell. */
     void assemble(const ElasticElements &of);
 
-    /** The stiffness and the thermal load anew, of the points of a rule of the unit cell. */
-    void assemble_region(const ElasticElements                                        &of,
-                         const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-                         const dealii::Quadrature<dim>                                &rule);
-
     /** At a state u, whose ghosts are up to date. */
     double energy(const Vector &u) const;
 
@@ -63,19 +55,11 @@ namespace PeriDeal
       return sum;
     }
 
-    std::optional<CarriedParts<dim>> carried; // of finite elements alone that cracks remove
-
     dealii::FEValues<dim>      values;
     dealii::FullMatrix<double> stiffness;
     dealii::Vector<double>     thermal, mass, diagonal, volume; // diagonal: of the mass
     double                     thermal_energy = 0.;
     std::vector<dealii::types::global_dof_index> indices, unknowns;
-
-  private:
-    /** Add the stiffness and the thermal load of a point. */
-    void add_point(const ElasticElements       &of,
-                   const dealii::FEValues<dim> &at,
-                   const unsigned int           q);
   };
 
 
