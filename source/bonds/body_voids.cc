@@ -421,8 +421,11 @@ namespace PeriDeal
         return smallest;
       }
 
-      /** By the nearest facet; where several are as near, that which sees the point best. */
-      bool is_outside(const Point<dim> &p) const
+      /**
+       * How far outside the body a point is, less than 0 inside: by the nearest facet; where
+       * several are as near, that which sees the point best.
+       */
+      double depth(const Point<dim> &p) const
       {
         double smallest = std::numeric_limits<double>::max(), height = 0.;
         bins.visit_near(p, [&](const unsigned int f) {
@@ -432,7 +435,7 @@ namespace PeriDeal
             height = own;
           smallest = std::min(smallest, distance);
         });
-        return smallest > 2. * tiny && smallest < std::numeric_limits<double>::max() && height > 0.;
+        return facets.empty() || height < 0. ? -smallest : smallest;
       }
 
       bool leaves(const Point<dim> &a, const Point<dim> &b) const
@@ -452,11 +455,16 @@ namespace PeriDeal
         places.push_back(0.);
         places.push_back(1.);
         std::sort(places.begin(), places.end());
-        constexpr double slack = 1e-6;
+        // A way along a rim that curves away leaves the body by little: that is a chord of it.
+        constexpr double slack = 1e-6, chord = 0.12;
+        const double     length = a.distance(b);
         for (std::size_t k = 1; k < places.size(); ++k)
-          if (places[k] - places[k - 1] > slack &&
-              is_outside(Point<dim>(a + 0.5 * (places[k] + places[k - 1]) * (b - a))))
-            return true;
+          if (const double part = places[k] - places[k - 1]; part > slack)
+            {
+              const Point<dim> middle(a + 0.5 * (places[k] + places[k - 1]) * (b - a));
+              if (depth(middle) > std::max(2. * tiny, chord * part * length))
+                return true;
+            }
         return false;
       }
 

@@ -110,9 +110,9 @@ def plates():
     """A hole against Kirsch, a cantilever against Timoshenko's beam."""
     table = Comparison("Plates against closed forms")
     run = run_quietly("hole_in_tension.prm")
-    # Measured: finite elements 1.0, 4.3, 2.6, 1.5 %; peridynamics 0.03, 0.6 and 0.8 % away from the
-    # hole, 13.8 % at the second row above it. The hole's steps are a larger hole.
-    for model, bounds in ((FEM, (0.015, 0.064, 0.04, 0.023)), (PD, (0.2, 0.0045, 0.0083, 0.012))):
+    # Measured: finite elements 1.0, 4.3, 2.6, 1.5 %; peridynamics 1.1, 1.3 and 1.1 % away from the
+    # hole, 12 % at the second row above it. The hole's steps are a larger hole.
+    for model, bounds in ((FEM, (0.015, 0.064, 0.04, 0.023)), (PD, (0.2, 0.016, 0.018, 0.016))):
         for row, bound in zip(run.rows(model), bounds):
             r2 = row["x"] ** 2 + row["y"] ** 2
             table.add(f"hole, {model}: sxx at y = {row['y']}", row["sxx"], 1 + 0.5 / r2 + 1.5 / r2 ** 2, relative=bound)

@@ -13,8 +13,8 @@ namespace PeriDeal
 {
   /**
    * Which straight ways between two nodes leave the body: through holes, notches, empty parts of an
-   * image, or past a reentrant side. No bond exists there. What only touches the boundary, or runs
-   * along it, stays in the body.
+   * image, or past a reentrant side. No bond exists there. What only touches the boundary, runs
+   * along it, or is a chord of a rim on meshes, stays in the body.
    */
   template <int dim>
   class BodyVoids
