@@ -293,11 +293,6 @@ namespace PeriDeal
         return false;
       }
 
-      bool before_site(const unsigned int, const typename Lattice<dim>::Index &) const override
-      {
-        return false; // there are no sites
-      }
-
     private:
       struct Facet
       {

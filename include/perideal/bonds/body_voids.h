@@ -32,8 +32,11 @@ namespace PeriDeal
      * On a lattice: whether the way from a node to a site beyond flat sides leaves the body and its
      * mirror images there.
      */
-    virtual bool before_site(const unsigned int                  node,
-                             const typename Lattice<dim>::Index &site) const = 0;
+    virtual bool before_site(const unsigned int /*node*/,
+                             const typename Lattice<dim>::Index & /*site*/) const
+    {
+      return false;
+    }
   };
 
 
