@@ -122,7 +122,7 @@ namespace PeriDeal
     std::vector<Index>  places{index};
     std::vector<Step>   steps;
     Index               image = index;
-    double              parts = 1.;
+    double              parts = 1., own_parts = 1.; // own: of the body and its mirror images
     site.terms.assign(1, Term{0, 0, 1.});
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -131,10 +131,15 @@ namespace PeriDeal
           steps.assign(1, {index[d], 1., false});
         else if (!resolve(d, index[d], steps, image[d]))
           return false;
+        if (steps.size() > 1)
+          own_parts = 0.;
         for (const bool above : {false, true})
-          if (!lattice.at_centers && image[d] == (above ? last : 0) &&
-              beyond[2 * d + (above ? 1 : 0)] != BeyondSide::nothing)
-            parts *= 2.;
+          if (const auto kind = beyond[2 * d + (above ? 1 : 0)];
+              !lattice.at_centers && image[d] == (above ? last : 0) && kind != BeyondSide::nothing)
+            {
+              parts *= 2.;
+              own_parts *= kind == BeyondSide::mirrored ? 2. : 1.;
+            }
         const std::size_t n = places.size();
         for (std::size_t s = 1; s < steps.size(); ++s)
           for (std::size_t k = 0; k < n; ++k)
@@ -163,7 +168,7 @@ namespace PeriDeal
       return false;
     site.volume        = parts * families.nodes().volume(site.origin);
     const double share = share_of(index);
-    const double own   = image == index ? families.nodes().volume(site.origin) : 0.;
+    const double own   = own_parts * families.nodes().volume(site.origin);
     site.volume        = own + share * (site.volume - own);
     return share > 0. || own > 0.;
   }

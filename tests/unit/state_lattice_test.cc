@@ -181,7 +181,8 @@ TEST(StateLattice, holes_and_cracks)
   const Settings fine = {{"Domain/Cells", "40, 30"}};
   expect_same<2>(fine + Settings{{"Domain/Shape", "plate with hole"},
                                  {"Domain/Hole center", "0.5, 0.4"},
-                                 {"Domain/Hole radius", "0.13"}},
+                                 {"Domain/Hole radius", "0.13"},
+                                 {"Peridynamics/Bonds across voids", "keep"}},
                  0.);
   expect_same<2>(fine + Settings{{"Domain/Shape", "plate with hole"},
                                  {"Domain/Hole center", "0.5, 0.4"},

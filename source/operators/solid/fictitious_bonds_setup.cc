@@ -30,6 +30,7 @@ namespace PeriDeal
 
     std::unordered_map<std::size_t, unsigned int>           image_at; // by the key of its site
     std::unordered_map<unsigned int, unsigned int>          image_of; // by the node itself
+    std::unordered_map<unsigned int, unsigned int>          beside;   // by the image at its place
     std::vector<std::size_t>                                parted;   // bonds
     std::optional<FamilyCompletion<dim>>                    completion;
     std::vector<Member>                                     family; // of the node at work
@@ -309,7 +310,7 @@ namespace PeriDeal
         const auto   member = search.family[m];
         const double more   = factors != nullptr ? (*factors)[m] : 0.;
         if (member.beyond > 0.)
-          add_bond_beyond(i, m, 1. + more, search);
+          add_bond_beyond(i, m, more, search);
         if (more > 0. && member.inside > 0. && search.volumes[m] > 0. &&
             !(near_crack && families.cracks().cuts(i, member.node)))
           add_lattice_bond(image_of(member.node, search), m, more, false, search);
@@ -320,7 +321,7 @@ namespace PeriDeal
   template <int dim>
   void FictitiousBonds<dim>::add_bond_beyond(const unsigned int i,
                                              const unsigned int member,
-                                             const double       factor,
+                                             const double       more,
                                              Search            &search)
   {
     const Nodes<dim>   &nodes   = families.nodes();
@@ -337,11 +338,20 @@ namespace PeriDeal
     if (cut &&
         !(site.terms.size() == 1 && is_separated(i, site.terms[0], twice_planes(site.terms[0]))))
       return;
-    add_lattice_bond(image_at(index, site, search.family[member].beyond, search),
-                     member,
-                     factor,
-                     cut,
-                     search);
+    const unsigned int image = image_at(index, site, search.family[member].beyond, search);
+    // Of a bond that breaks by itself what completes the family is apart, as in the body.
+    const bool breaks = site.terms.size() == 1;
+    add_lattice_bond(image, member, breaks ? 1. : 1. + more, cut, search);
+    if (!breaks || more <= 0. || cut)
+      return;
+    const auto [entry, is_new] = search.beside.try_emplace(image, fictitious.size());
+    if (is_new)
+      {
+        auto fields    = fictitious[image];
+        fields.is_real = true;
+        fictitious.add(fields, site.terms);
+      }
+    add_lattice_bond(entry->second, member, more, false, search);
   }
 
 

@@ -53,6 +53,13 @@ namespace PeriDeal
       places.push_back(std::lower_bound(pulled.begin(), pulled.end(), term.node) - pulled.begin());
     if (nodes.partitioner()->n_mpi_processes() > 1)
       passed.reinit(interleaved(*nodes.partitioner(), dim));
+    Vector n_images(nodes.partitioner());
+    for (const unsigned int node : pulled)
+      n_images.local_element(node) = 1.;
+    n_images.compress(VectorOperation::add);
+    followed.assign(nodes.n_owned(), false);
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      followed[i] = n_images.local_element(i) > 0.;
   }
 
 

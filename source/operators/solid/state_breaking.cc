@@ -160,9 +160,14 @@ namespace PeriDeal
     double       hinder   = n_losing > 0.1 * nodes.n_global() ? 1. : 0.;
     if (nonlinear() ? solid.beyond != nullptr : !solid.rows.has_lattice() || solid.thermal.any())
       hinder = 1.;
-    if (solid.beyond) // tau of these changes what their images bear
+    if (solid.beyond)
       for (const unsigned int i : losing)
-        solid.beyond->for_each_of(i, [&](const auto &) { hinder = 1.; });
+        {
+          if (solid.beyond->images().is_followed(i)) // their rows are not all that pulls at them
+            hinder = 1.;
+          // tau of these changes what their images bear
+          solid.beyond->for_each_of(i, [&](const auto &) { hinder = 1.; });
+        }
     if (Utilities::MPI::max(hinder, nodes.communicator()) > 0.)
       {
         this->unbalanced(r, u, t);

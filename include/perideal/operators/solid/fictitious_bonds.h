@@ -50,7 +50,7 @@ namespace PeriDeal
     };
 
     /**
-     * Families have to outlive this object, with the cracks that they have now. Not collective.
+     * Families have to outlive this object, with the cracks that they have now. Collective.
      * @param completes what ends at other sides and at voids is made up for (FamilyCompletion)
      * @param may_pack  store which of their family bonds are: with linear kinematics, where cracks
      *                  do not grow
@@ -60,7 +60,7 @@ namespace PeriDeal
                     const bool                             completes,
                     const bool                             may_pack);
 
-    /** The same of a mesh. Not collective. */
+    /** The same of a mesh. Collective. */
     FictitiousBonds(const Families<dim> &families, const std::vector<BoundaryImage<dim>> &beyond);
 
     /** Add sum W x^2/V_i to q of the owned nodes. */
@@ -257,7 +257,7 @@ namespace PeriDeal
                           const bool                    cut,
                           Search                       &search);
     void         add_lattice_bond(const unsigned int, unsigned int, double, bool cut, Search &);
-    void         add_bond_beyond(const unsigned int i, unsigned int, double factor, Search &);
+    void         add_bond_beyond(const unsigned int i, unsigned int, double more, Search &);
     unsigned int image_of(const unsigned int node, Search &search); // that is the node itself
     unsigned int image_at(const Index &index,
                           const Site  &site,

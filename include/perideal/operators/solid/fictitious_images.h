@@ -39,7 +39,7 @@ namespace PeriDeal
     explicit FictitiousImages(const Nodes<dim> &nodes);
 
     /**
-     * Returns its number. To be followed by make_room() after the last one.
+     * Returns its number. To be followed by make_room(), collective, after the last one.
      * @param twice_planes of a BoundaryImage; only on a mesh
      */
     unsigned int add(const Image              &image,
@@ -78,6 +78,12 @@ namespace PeriDeal
     }
 
     bool any_mirrored_alone() const;
+
+    /** Some image, on any process, follows from this owned node and passes forces on to it. */
+    bool is_followed(const unsigned int node) const
+    {
+      return !followed.empty() && followed[node];
+    }
 
     const Term &first_term(const unsigned int image) const
     {
@@ -143,6 +149,7 @@ namespace PeriDeal
     std::vector<Term>               terms;
     std::vector<unsigned int>       pulled; // the nodes of all terms, in ascending order
     std::vector<unsigned int>       places; // of each term's node in these
+    std::vector<bool>               followed; // by owned node; empty: none
     mutable std::vector<double>     values, forces, sums; // sums: of the pulled nodes
     std::vector<double>             kept_forces;
     mutable Vector                  passed; // where there are other processes
