@@ -17,19 +17,16 @@ namespace PeriDeal
   BondConductivities<dim>::BondConductivities(const Neighbors<dim> &neighbors,
                                               const Material       &material,
                                               const Expression     &initial_value,
-                                              const SidePoint      &side_point)
+                                              SidePoints            side_points)
     : neighbors(neighbors)
     , material(material)
     , all_alike(material.uniform_conductivity())
+    , moved(std::move(side_points))
   {
     const Nodes<dim>  &nodes = neighbors.nodes();
     const unsigned int n     = all_alike ? 1 : nodes.n_local();
     std::string        message;
     values.resize(n);
-    if (side_point && !all_alike)
-      for (unsigned int i = 0; i < n; ++i)
-        if (const std::optional<Point<dim>> p = side_point(i))
-          moved.emplace(i, *p);
     for (unsigned int i = 0; i < n && message.empty(); ++i)
       {
         const Point<dim> p = nodes.n_local() > 0 ? nodes.position(i) : Point<dim>();

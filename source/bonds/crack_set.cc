@@ -168,18 +168,24 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::optional<Point<dim>> CrackSet<dim>::side_point(const unsigned int node) const
+  std::unordered_map<unsigned int, Point<dim>> CrackSet<dim>::side_points() const
   {
-    const Nodes<dim> &nodes = neighbors.nodes();
-    const Point<dim> &p     = nodes.crack_point(node);
-    const double      step  = 1e-6 * nodes.smallest_spacing();
-    for (const CrackGeometry<dim> &crack : cracks)
-      if (crack.is_near(p, step) && std::abs(crack.signed_distance(p)) < 1e-3 * step &&
-          crack.covers(p))
-        return p + step * crack.normal();
-    if (p != nodes.position(node)) // doubled by a crack that is cut into the mesh
+    const Nodes<dim> &nodes    = neighbors.nodes();
+    const double      step     = 1e-6 * nodes.smallest_spacing();
+    const double      last     = past.events().empty() ? time : past.events().back();
+    const auto        all      = make_crack_geometries(past.pieces(last, cut_at_tips));
+    const auto        moved_to = [&](const Point<dim> &p) {
+      for (const CrackGeometry<dim> &crack : all)
+        if (crack.is_near(p, step) && std::abs(crack.signed_distance(p)) < 1e-3 * step &&
+            crack.covers(p))
+          return p + step * crack.normal();
       return p;
-    return {};
+    };
+    std::unordered_map<unsigned int, Point<dim>> moved;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      if (const Point<dim> p = moved_to(nodes.crack_point(i)); p != nodes.position(i))
+        moved.emplace(i, p); // nodes doubled by a crack in the mesh have a point of their own
+    return moved;
   }
 
 

@@ -14,7 +14,8 @@ namespace PeriDeal
     , material(topology,
                body.material,
                body.initial_and_source.initial_value,
-               [&families](const unsigned int node) { return families.cracks().side_point(node); })
+               body.material.uniform_conductivity() ? typename BondConductivities<dim>::SidePoints() :
+                                                      families.cracks().side_points())
     , node_factors(topology)
     , corrects_all(body.peridynamics.surface_correction == SurfaceCorrection::energy)
   {}

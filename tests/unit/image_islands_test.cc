@@ -37,9 +37,11 @@ namespace PeriDeal
     fill(scene, body + elastic({{"Domain/Islands", "remove"}}));
     EXPECT_EQ(scene.domain.image->counts().back(), 48u - 29u);
     expect_parts(scene.domain.notes.front(), {"3 cells", "removed"});
-    // Bonds alone reach across the gap of one cell with m = 3.
+    // With m = 3 bonds reach across the gap of one cell, if they may.
+    const Settings with_bonds = image.settings() + elastic({{"Models", "peridynamics"}});
+    expect_parts(fault(with_bonds), {"'Islands' in section 'Domain'", "3 cells"});
     Scene<2> bonds;
-    fill(bonds, image.settings() + elastic({{"Models", "peridynamics"}}));
+    fill(bonds, with_bonds + Settings{{"Peridynamics/Bonds across voids", "keep"}});
     EXPECT_EQ(bonds.domain.image->counts().back(), 48u - 32u);
     expect_parts(bonds.domain.notes.back(), {"reach across a void", "'Bonds across voids = cut'"});
     // What is held in one direction only is no better.

@@ -172,7 +172,7 @@ TEST(MshCheck, numbers)
   expect_fault(with(latest, "1 1 0\n2 1 0", "1 nan 0\n2 1 0"), 2, 25, {"'nan'"});
   expect_fault(with(latest, "1 1 0\n2 1 0", "1 1e300 0\n2 1 0"), 2, 25, {"1e300", "too large"});
   expect_fault(with(old, "5 1 1 0", "4 1 1 0"), 2, 10, {"node 4 twice"});
-  expect_fault(with(latest, "7\n8\n9\n", "7\n7\n9\n"), 2, 22, {"node 7 twice"});
+  expect_fault(with(latest, "7\n8\n9\n", "7\n7\n9\n"), 2, 28, {"node 7 twice"});
   expect_fault(with(old, "4 3 2 0 4 2", "3 3 2 0 4 2"), 2, 18, {"element 3", "line 17"});
   expect_fault(with(latest, "6 5 6 9 8", "6 5 6 10 8"), 2, 40, {"node 10", "element 6"});
   expect_fault(with(old, "1 1 2 5 3", "1 1 2 -5 3"), 2, 15, {"found -5"});

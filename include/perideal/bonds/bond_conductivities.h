@@ -7,8 +7,6 @@
 #include <perideal/bonds/neighbors.h>
 #include <perideal/scene/material.h>
 
-#include <functional>
-#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -19,8 +17,8 @@ namespace PeriDeal
   class BondConductivities
   {
   public:
-    /** Where a node has its material, if that is not at its own place. */
-    using SidePoint = std::function<std::optional<dealii::Point<dim>>(const unsigned int node)>;
+    /** Where nodes have their material, if that is not at their own place. */
+    using SidePoints = std::unordered_map<unsigned int, dealii::Point<dim>>;
 
     /**
      * At the initial temperatures. Collective. Throws UserError where one is not positive.
@@ -29,7 +27,7 @@ namespace PeriDeal
     BondConductivities(const Neighbors<dim> &neighbors,
                        const Material       &material,
                        const Expression     &initial_value,
-                       const SidePoint      &side_point = {});
+                       SidePoints            side_points = {});
 
     /** One conductivity everywhere. */
     bool uniform() const;
@@ -58,7 +56,7 @@ namespace PeriDeal
     const bool            all_alike;
     std::vector<double>   values; // of nodes, or the one
 
-    std::unordered_map<unsigned int, dealii::Point<dim>> moved; // where nodes have their material
+    SidePoints            moved;
 
     double harmonic(const unsigned int node, const unsigned int neighbor) const;
     double at(const unsigned int node, const double T) const;

@@ -12,6 +12,7 @@
 
 #include <functional>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -62,10 +63,10 @@ namespace PeriDeal
     bool empty() const;
 
     /**
-     * A point slightly to the left of a crack that a node lies on: it belongs to that side, and has
-     * its material. None elsewhere.
+     * A point slightly to the left of a crack for each local node on it: it belongs to that side,
+     * and has its material. So at all times where the crack comes to grow to.
      */
-    std::optional<dealii::Point<dim>> side_point(const unsigned int node) const;
+    std::unordered_map<unsigned int, dealii::Point<dim>> side_points() const;
 
     /**
      * What the cracks leave of a bond's conductance, and whether it crosses any. A contact
