@@ -179,18 +179,16 @@ namespace PeriDeal
   {
     const Lattice<dim> &lattice = *families.nodes().lattice();
     const int           on      = lattice.at_centers ? 0 : 1; // what counts as beyond a side
-    bool                in_part = false;
-    unsigned int        n       = 0;
+    unsigned int        n_free = 0;
     for (unsigned int d = 0; d < dim; ++d)
       {
         const int  last = lattice.n_sites[d] - 1;
         const auto kind = index[d] < on        ? beyond[2 * d] :
                           index[d] > last - on ? beyond[2 * d + 1] :
                                                  BeyondSide::nothing;
-        in_part         = in_part || kind == BeyondSide::in_part;
-        n += kind == BeyondSide::in_part || kind == BeyondSide::continued ? 1 : 0;
+        n_free += kind == BeyondSide::in_part ? 1 : 0;
       }
-    return !in_part ? 1. : n > 1 ? 0. : 0.5;
+    return n_free == 0 ? 1. : n_free == 1 ? 0.5 : 0.;
   }
 
 

@@ -144,6 +144,9 @@ subsection Elasticity
   set Solver     = dynamics
   set Kinematics = full
 end
+subsection Peridynamics
+  set Surface correction = none
+end
 subsection Time
   set End time  = 4
   set Stepper   = verlet
@@ -259,7 +262,7 @@ RUNS = {
     "traction without a value": (TRACTION_ENDS, "finite values", ["'Traction'", "sqrt(1 - t)", "is not finite at (1, "], formula_ends(1)),
     "conductor that warms": (WARMING, "time step", ["'Time step'", "'euler'"], limit_is_passed),
     "less and less capacity": (LESS_CAPACITY, "time step", ["'Time step'", "'euler'"], limit_is_passed),
-    "strip that is pulled": (PULLED.replace("STEP", "0.0089"), "time step", ["'Time step'", "'verlet'", "stiffer"], limit_is_passed),
+    "strip that is pulled": (PULLED.replace("STEP", "0.0090"), "time step", ["'Time step'", "'verlet'", "stiffer"], limit_is_passed),
     "fragment that flies": (FLYING, "parts flying off", ["'Kinematics = linear'", "have broken"], has_flown_off),
 }
 
@@ -325,12 +328,12 @@ def findings_of_solvers():
 
     When that is depends on the last digits of an inverted body: from t = 3.6 to beyond 4 on different processors.
     """
-    scene = PULLED.replace("STEP", "0.0089")
+    scene = PULLED.replace("STEP", "0.0090")
     words = ("'verlet' is stable up to", "the body is inside out", "The energy of the motion is not kept")
     numbers = {}
     for action, ranks in (("warn", 1), ("warn", 2), ("off", 1)):
         what = f"strip that is pulled, {action} on {ranks}"
-        run = run_scene(scene, {"Guards/Action": action, "Output/Fields": "none", "Time/End time": "3"}, ranks)
+        run = run_scene(scene, {"Guards/Action": action, "Output/Fields": "none", "Time/End time": "2"}, ranks)
         notes = told_by(run)
         check(run.summary["status"] == "complete" and "guard" not in run.summary, f"{what}: {run.summary['status']}")
         check_told(notes, words if action == "warn" else (), what)
@@ -340,14 +343,14 @@ def findings_of_solvers():
     check(whole[1] == two[1], f"notes of {whole[1]}, and of {two[1]} on two processes")
     # until that, and nothing is told again by a run that is resumed
     for action in ("warn", "off"):
-        settings = {"Guards/Action": action, "Time/End time": "8", "Checkpoint/Times": "3"}
+        settings = {"Guards/Action": action, "Time/End time": "8", "Checkpoint/Times": "2"}
         run = run_scene(scene, settings, expect_error=True)
         for what in (f"{action}, until nothing is finite", f"{action}, resumed"):
             is_resumed = "resumed" in what
             guard = run.summary.get("guard", {})
             check(run.summary["status"] == "diverged" and guard.get("monitor") == "finite values", f"{what}: {run.summary['status']}, {guard}")
-            check(3 < guard["time"] < 8, f"{what}: at t = {guard['time']}")
-            check(("resumed at t = 3," in run.stdout) == is_resumed, f"{what}: {run.stdout}")
+            check(2 < guard["time"] < 8, f"{what}: at t = {guard['time']}")
+            check(("resumed at t = 2," in run.stdout) == is_resumed, f"{what}: {run.stdout}")
             told = [line for line in run.stdout.splitlines() if TOLD in line]  # summary.json may be that of an earlier time of output
             check_told(told, words if action == "warn" and not is_resumed else (), what)
             if not is_resumed:
