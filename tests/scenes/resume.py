@@ -294,11 +294,11 @@ def check_mistakes():
     check("no results are written at t = 0.02" in result.stdout, "a time that was passed over is told")
 
 
-# Steps of seconds.
+# Steps of about a second, and one of several.
 LONG_STEPS = {
-    "chebyshev": ("quick_start.prm", {"Models": "peridynamics", "Domain/Cells": "600, 600", "Output/Write at": "", "Output/Fields": "none"}, 0),
-    "sdirk2": ("quick_start.prm", {"Models": "peridynamics", "Domain/Cells": "300, 300", "Output/Write at": "", "Output/Fields": "none", "Time/Stepper": "sdirk2",
-                                   "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT),
+    "chebyshev": ("quick_start.prm", {"Models": "peridynamics", "Domain/Cells": "500, 500", "Output/Write at": "", "Output/Fields": "none", "Time/End time": "4"}, 0),
+    "sdirk2": ("quick_start.prm", {"Models": "peridynamics", "Domain/Cells": "500, 500", "Output/Write at": "", "Output/Fields": "none", "Time/Stepper": "sdirk2",
+                                   "Time/Time step": "0.5", "Time/End time": "2.5", "Solver/Tolerance": "1e-13"}, IMPLICIT),
 }
 
 
@@ -320,7 +320,8 @@ def check_interrupted():
                 said += process.stderr.readline()
             acknowledged = time.monotonic() - start
             _, rest = process.communicate(timeout=60)
-            check(acknowledged < 2., f"{what}: acknowledged after {acknowledged:.1f} s")
+            # mpirun tells its processes after a second, and hands on what they say when it has killed them, another second later.
+            check(acknowledged < (1. if ranks == 1 else 3.), f"{what}: acknowledged after {acknowledged:.1f} s")
             with open(os.path.join(folder, "summary.json")) as file:
                 check(json.load(file)["status"] == "stopped", f"{what}: the summary does not say stopped")
             if ranks == 1:
@@ -329,7 +330,8 @@ def check_interrupted():
                 check(process.returncode in (1, 3), f"{what}: exit status {process.returncode}")
                 check(bool(glob.glob(os.path.join(folder, "checkpoints", "*.h5"))), f"{what}: no checkpoint\n{said}{rest}")
             check(run(scene, folder, settings, ["--resume"], ranks=ranks).returncode == 0, f"{what}: resumed")
-            found = compare(whole, folder, tolerance if ranks == 1 else 1e-10, what)
+            # On two processes heat contents of halves that cancel differ in their last digits.
+            found = compare(whole, folder, tolerance if ranks == 1 else 1e-8, what)
             print(f"{what}: acknowledged after {acknowledged:.2f} s, difference {found:.1e}")
 
 
