@@ -118,7 +118,7 @@ def stopped():
 
 def ranks():
     """The same on 1, 2 and 4 processes."""
-    squeezed = {**HELD, "Domain/Cells": "16, 16", "Boundary conditions/Traction": "right: -0.2, 0", "Time/End time": "20"}
+    squeezed = {**HELD, "Domain/Cells": "16, 16", "Boundary conditions/Traction": "right: -0.2 - 0.004*y, 0", "Time/End time": "20"}
     ends = [run_scene(BODY, squeezed, ranks=n, expect_error=True).stderr for n in (1, 2, 4)]
     check("inside out" in ends[0] and ends[0] == ends[1] == ends[2], f"the same message: {ends}")
     pulled = {**HELD, "Domain/Cells": "16, 8", "Boundary conditions/Displacement": "left: 0, 0; right: 2.5*(t/20)^2, 0", "Time/End time": "20",
