@@ -179,7 +179,7 @@ namespace PeriDeal
   {
     const Lattice<dim> &lattice = *families.nodes().lattice();
     const int           on      = lattice.at_centers ? 0 : 1; // what counts as beyond a side
-    unsigned int        n_free = 0;
+    unsigned int        n_free = 0, n_continued = 0;
     for (unsigned int d = 0; d < dim; ++d)
       {
         const int  last = lattice.n_sites[d] - 1;
@@ -187,8 +187,11 @@ namespace PeriDeal
                           index[d] > last - on ? beyond[2 * d + 1] :
                                                  BeyondSide::nothing;
         n_free += kind == BeyondSide::in_part ? 1 : 0;
+        n_continued += kind == BeyondSide::continued ? 1 : 0;
       }
-    return n_free == 0 ? 1. : n_free == 1 ? 0.5 : 0.;
+    if (n_free == 0)
+      return 1.;
+    return n_free > 1 ? 0. : n_continued > 0 ? 0.25 : 0.5;
   }
 
 
