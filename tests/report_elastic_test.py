@@ -397,7 +397,7 @@ class Broken(ReportCase):
             self.assertIn(part, text.replace("At the end the coupled", "The coupled"))
         for figure in ("force_over_displacement", "crack_growth"):
             self.assertIn(figure, {p.stem for p in figures.iterdir()})
-        self.assertIn("the way from the end of a crack to its tip", text)
+        self.assertIn("the path from the end of a crack to its tip", text)
         self.assertNotIn("damage_0000", {p.stem for p in figures.iterdir()})  # the start is for films
 
     def test_film(self):

@@ -3,7 +3,7 @@
 
 /*
  * A deal.II program that deforms a body with PeriDeal, in peridynamics and in finite elements on
- * the same dofs: pulls it, lets it swing, and cuts it by a crack that grows. Each result is
+ * the same dofs: pulls it, lets it vibrate, and cuts it by a crack that grows. Each result is
  * compared with one that is known exactly, or the models with each other; exit status 1 if one is
  * wrong.
  */
@@ -164,7 +164,7 @@ namespace
   }
 
 
-  /** A free body that swings keeps its energy; what it loses by a step is of round-off. */
+  /** A free body that vibrates conserves its energy to round-off. */
   void motion(Square &square, Checks &checks)
   {
     PeriDeal::SolidParameters<2> body;
@@ -190,7 +190,7 @@ namespace
   }
 
 
-  /** A crack that grows sets energy free; in both models about the same. */
+  /** A crack that grows releases energy; in both models about the same. */
   void growth(Square &square, Checks &checks)
   {
     PeriDeal::SolidParameters<2> body;
@@ -217,7 +217,7 @@ namespace
     checks.out << "Growth: the crack takes " << 100. * by_bonds
                << " % of the energy (peridynamics), " << 100. * by_elements
                << " % (finite elements)" << std::endl;
-    checks.smaller("no energy is set free", -by_bonds, -0.05);
+    checks.smaller("no energy is released", -by_bonds, -0.05);
     checks.smaller("one model over the other, difference from 1",
                    std::abs(by_bonds / by_elements - 1.),
                    0.1);

@@ -36,7 +36,7 @@ def drawn_quantities(run):
 
 
 def ways(run, name):
-    """{where: of_models} of the curves of lengths: of all cracks, and of the way of each tip."""
+    """{where: of_models} of the curves of lengths: of all cracks, and of the path of each tip."""
     found = {"all": run.totals[name]}
     found.update((tip, run.totals[f"{LENGTH} at {tip}"]) for tip in tips(run, f"{LENGTH} at ")[:len(TIP_COLORS)]
                  if name == LENGTH)
@@ -88,8 +88,8 @@ def caption(run):
     name = measure(run)
     text = f"The {name.split()[1]} of new cracks: the shares of all broken bonds"
     if name == LENGTH and tips(run, f"{LENGTH} at "):
-        text += "; in colour the way from the end of a crack to its tip"
+        text += "; in colour the path from the end of a crack to its tip"
     text += "."
     if tips(run, "tip speed at "):
-        text += " Below, the speed of the tips: the slope over the last four horizons of their way."
+        text += " Below, the speed of the tips: the slope over the last four horizons of their path."
     return text

@@ -184,7 +184,7 @@ class Shape:
         return result
 
     def is_whole(self):
-        """Whether all cells hang together as they do at rest."""
+        """Whether all cells are connected as they are at rest."""
         return len(self.source) == len(self.mesh.cells) and not self.is_torn
 
     def edge(self):

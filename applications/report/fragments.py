@@ -3,7 +3,7 @@
 """Pieces that have broken off a body and fly away: scales and views leave them out, and say so.
 
 A tear is an edge between two nodes that have lost bonds and part by far more than nodes of the
-whole material do. What hangs together without tears is a piece; a small one that has gone much
+whole material do. What is connected without tears is a piece; a small one that has gone much
 farther than the body is a fragment.
 """
 

@@ -19,7 +19,7 @@ namespace ScalarWave
   /**
    * Waves of a scalar u, as of a membrane: c u_tt = div(k grad u), c the product of `Density` and
    * `Heat capacity`, k the `Conductivity`, at rest at first. Unknowns, operator and fields are
-   * those of what diffuses with the same k and c, in whatever model the scene names: C u_tt = -K u.
+   * those of diffusion with the same k and c, in whatever model the scene names: C u_tt = -K u.
    *
    * Steps are central differences. A field of one frequency w then moves with the frequency W,
    * sin(W dt/2) = w dt/2, to round-off.
@@ -96,7 +96,7 @@ namespace ScalarWave
   public:
     /**
      * Throws UserError unless the scene is one in time, in which the sides are at rest or free and
-     * nothing acts from outside, so that energy is kept.
+     * nothing acts from outside, so that energy is conserved.
      */
     void require_computable(const PeriDeal::Scene<dim> &scene) const override;
 

@@ -36,7 +36,7 @@ namespace PeriDeal
     constexpr unsigned int none = std::numeric_limits<unsigned int>::max();
 
 
-    /** The corners of facets, each once, and how they hang together. */
+    /** The corners of facets, each once, and how they are connected. */
     template <int dim>
     class CrackGraph
     {
@@ -62,7 +62,7 @@ namespace PeriDeal
         fronts.assign(places.size(), none);
       }
 
-      /** The shortest ways from the fronts, and from which. */
+      /** The shortest paths from the fronts, and from which. */
       void find_ways(const std::vector<CrackFront<dim>> &from)
       {
         using Entry = std::tuple<double, unsigned int, unsigned int>; // way, front, corner
@@ -114,7 +114,7 @@ namespace PeriDeal
         look(0);
       }
 
-      /** Corners in groups that hang together, each and all in the order of places. */
+      /** Corners in connected groups, each and all in the order of places. */
       std::vector<std::vector<unsigned int>> groups_of(std::vector<unsigned int> list) const
       {
         std::sort(list.begin(), list.end(), [&](const unsigned int a, const unsigned int b) {
@@ -202,7 +202,7 @@ namespace PeriDeal
                       const double                           span,
                       const double                           now)
   {
-    // The farthest way until each time at which it grew.
+    // The longest path until each time at which it grew.
     std::sort(times_and_ways.begin(), times_and_ways.end());
     std::vector<std::pair<double, double>> steps;
     for (const auto &[time, way] : times_and_ways)
@@ -221,7 +221,7 @@ namespace PeriDeal
     const double begin = steps[first].first, duration = now - begin;
     if (!(duration > 0.))
       return 0.;
-    // Integrals of the way, constant between steps, times the time from the middle.
+    // Integrals of the path length, constant between steps, times the time from the middle.
     double moment = 0.;
     for (std::size_t k = first; k < steps.size(); ++k)
       {

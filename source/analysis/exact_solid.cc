@@ -473,7 +473,7 @@ namespace PeriDeal
         require(context.no_named.empty(), call, context.no_named);
         return make_named(call, context);
       }
-    refuse_name_of_others(call, exact_solution_names(), "what diffuses", names);
+    refuse_name_of_others(call, exact_solution_names(), "diffusion", names);
     if (parts.size() != context.dim)
       {
         refuse_unknown_name(call, names, "an expression of x, y, z and t for each component");

@@ -299,7 +299,7 @@ namespace PeriDeal
                     UserError(solution_entry + ": '" + call.name + "' takes no arguments."));
         return make_series(call.name, context);
       }
-    refuse_name_of_others(call, exact_solid_names(), "bodies that deform", names);
+    refuse_name_of_others(call, exact_solid_names(), "elastic bodies", names);
     try
       {
         return std::make_unique<ExpressionSolution>(text, context.dim);

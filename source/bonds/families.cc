@@ -63,7 +63,7 @@ namespace PeriDeal
                     const BodyParameters<dim> &body,
                     const KernelWeights<dim>  &weights)
   {
-    // A slave of the layer extrapolation hangs on a node that may be half a spacing farther away
+    // A slave of the layer extrapolation depends on a node that may be half a spacing farther away
     // than any bond.
     const double layer  = body.peridynamics.extrapolates_layers() ?
                             body.horizon() + 0.5 * nodes.smallest_spacing() :

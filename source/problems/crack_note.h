@@ -11,8 +11,8 @@
 namespace PeriDeal
 {
   /**
-   * Tell of `Surface correction = crack scaling` where something diffuses around insulating cracks
-   * without it: bonds and cut cells beside a crack conduct too little along it.
+   * Tell of `Surface correction = crack scaling` for diffusion around insulating cracks without it:
+   * bonds and cut cells beside a crack conduct too little along it.
    */
   template <int dim>
   void note_missing_crack_scaling(const Scene<dim> &scene, std::vector<std::string> &notes);

@@ -77,7 +77,7 @@ namespace PeriDeal
     problem.ledger.see(problem.stepper->entered(), problem.dofs().get_communicator());
     const auto before = op.n_applications();
     const auto given  = range_of_given(scene, op);
-    // What a solid sets free beside bonds that break is as uneven as noise of the mesh, and grows
+    // What a solid releases beside bonds that break is as uneven as noise of the mesh, and grows
     // from load step to load step, though the steps of the heat problem are sound.
     const Trip trip = problem.heated_by_solid ? not_finite() :
                                                 growth.look(op,

@@ -13,8 +13,8 @@ namespace PeriDeal
   class DiffusionProblem;
 
   /**
-   * What the guards of a run look for where something diffuses, and what brings it about. Functions
-   * are collective unless they say otherwise.
+   * What the guards of a run look for in diffusion, and what brings it about. Functions are
+   * collective unless they say otherwise.
    */
   template <int dim>
   class DiffusionGuards

@@ -322,7 +322,7 @@ namespace PeriDeal
           (length > 0. ?
              ", a gap " + rounded_text(volume / length) + " wide in the mean, in place of a crack" :
              std::string()) +
-          ". 'pairs' with 'Surface correction = crack scaling' (section 'Peridynamics') keeps what conducts along it.");
+          ". 'pairs' with 'Surface correction = crack scaling' (section 'Peridynamics') keeps the conduction along it.");
       }
     return list;
   }

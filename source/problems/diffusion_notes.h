@@ -15,8 +15,8 @@
 namespace PeriDeal
 {
   /*
-   * Where methods for what diffuses are known to fail (prm/failures), by numbers of the scene at
-   * hand. An empty text: nothing to say.
+   * Where methods for diffusion are known to fail (prm/failures), by numbers of the scene at hand.
+   * An empty text: nothing to say.
    */
 
   /**

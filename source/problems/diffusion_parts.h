@@ -27,7 +27,7 @@ namespace PeriDeal
   std::unique_ptr<DiffusionProblem<dim>> make_bond_diffusion(Model<dim>       &model,
                                                              const Scene<dim> &scene);
 
-  /** The nodes of peridynamics by bonds alone, of what diffuses and of solids. Collective. */
+  /** The nodes of peridynamics by bonds alone, of diffusion and of solids. Collective. */
   template <int dim>
   Nodes<dim> &make_bond_nodes(Model<dim> &model, const Scene<dim> &scene);
 

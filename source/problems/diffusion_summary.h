@@ -9,7 +9,7 @@
 
 namespace PeriDeal
 {
-  /** What the summary says of a scene in which something diffuses: sides and what holds there. */
+  /** What the summary says of a scene of diffusion: sides and what holds there. */
   template <int dim>
   void describe_diffusion_scene(const Scene<dim> &scene, nlohmann::ordered_json &summary);
 } // namespace PeriDeal

@@ -9,8 +9,8 @@
 namespace PeriDeal
 {
   /**
-   * Rows of totals.csv of what diffuses, and what the summary says of a time. Throws UserError if
-   * not finite. Collective.
+   * Rows of totals.csv of diffusion, and what the summary says of a time. Throws UserError if not
+   * finite. Collective.
    */
   template <int dim>
   void add_diffusion_totals(DiffusionProblem<dim> &problem,

@@ -58,7 +58,7 @@ namespace PeriDeal
     /** What the rounds of one step need of each owned node. */
     struct HeatedNodes
     {
-      Vector              start; // temperatures before anything is set free
+      Vector              start; // temperatures before any heat is released
       Vector              free;  // 1; 0 where the temperature is given or follows from others
       std::vector<double> slope; // of the heat that is missing, about, over temperature
     };
@@ -192,7 +192,7 @@ namespace PeriDeal
           throw_no_agreement(solid, T0, t, round);
         renew();
       }
-    // What has been counted is what was set free, whatever the last round has left.
+    // What has been counted is what was released, whatever the last round has left.
     double sum = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {

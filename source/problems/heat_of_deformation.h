@@ -19,7 +19,7 @@ namespace PeriDeal
 
 
   /**
-   * The heat that a body at rest sets free when it is compressed and takes up when it expands,
+   * The heat that a body at rest releases when it is compressed and takes up when it expands,
    *
    *     rho c dT/dt = div k grad T + q - T0 d(beta theta)/dt,
    *
@@ -39,18 +39,18 @@ namespace PeriDeal
     /** Throws UserError where temperatures cannot be changed node by node. Not collective. */
     static void require(const Scene<dim> &scene);
 
-    /** The body is in its first equilibrium: what has deformed it before sets nothing free. */
+    /** The body is in its first equilibrium: what has deformed it before releases nothing. */
     void begin(const SolidProblem<dim> &solid);
 
     /**
      * The body is in an equilibrium at time t, found with the temperatures of its heat problem: add
-     * what it has set free on the way, and find both again.
+     * what it has released on the way, and find both again.
      * @param renew the equilibrium, with temperatures as they are. Throws UserError.
      */
     void add(const SolidProblem<dim> &solid, const double t, const std::function<void()> &renew);
 
     /**
-     * Since the start, of the whole body. What nodes of a given temperature set free leaves the
+     * Since the start, of the whole body. What nodes of a given temperature release leaves the
      * body there at once; it counts here, and not in what has entered.
      */
     double released() const
@@ -61,7 +61,7 @@ namespace PeriDeal
     void exchange(Archive &archive, const SolidProblem<dim> &solid, const NodeKeys &keys);
 
   private:
-    Vector counted; // S_i of the owned nodes for which heat has been set free
+    Vector counted; // S_i of the owned nodes for which heat has been released
     double set_free = 0.;
   };
 } // namespace PeriDeal

@@ -11,11 +11,11 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<ProblemFactory<dim>> make_diffusion_factory();
 
-  /** Of bodies that deform. */
+  /** Of elastic bodies. */
   template <int dim>
   std::unique_ptr<ProblemFactory<dim>> make_solid_factory();
 
-  /** Of cracks that grow, and entries that have no effect, where something diffuses. */
+  /** Of cracks that grow, and entries that have no effect, in diffusion. */
   template <int dim>
   void note_diffusion(const Scene<dim> &scene, std::vector<std::string> &notes);
 } // namespace PeriDeal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// What the guards of a run look for in bodies that deform, and what brings it about.
+// What the guards of a run look for in elastic bodies, and what brings it about.
 
 #include <perideal/problems/body_causes.h>
 #include <perideal/problems/solid_problem.h>

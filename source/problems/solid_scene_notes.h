@@ -12,8 +12,8 @@
 namespace PeriDeal
 {
   /*
-   * Where methods for bodies that deform are known to fail (prm/failures), by numbers of the scene
-   * at hand. An empty text: nothing to say. Not collective.
+   * Where methods for elastic bodies are known to fail (prm/failures), by numbers of the scene at
+   * hand. An empty text: nothing to say. Not collective.
    */
 
   /**

@@ -73,7 +73,7 @@ namespace PeriDeal
                       "is empty, but a mesh file has no node spacing: give a length.");
         step = 0.25 * smallest_spacing(domain);
       }
-    // Bodies that deform change between any two steps; what diffuses stops at each event.
+    // Elastic bodies change between any two steps; diffusion stops at each event.
     const double whole_steps = deforms ? -1. : time_step;
     return CrackHistory<dim>(cracks, step, steady ? 1. : cracks.end_time, whole_steps);
   }

@@ -428,7 +428,7 @@ namespace PeriDeal
     const auto refuse  = [&](const std::string &entry, const std::string &remedy) {
       if (is_given(entry))
         error(entry,
-              elastic ? "is for what diffuses; 'Physics' is 'elasticity'. Use " + remedy +
+              elastic ? "is for diffusion; 'Physics' is 'elasticity'. Use " + remedy +
                           ", or 'Temperature change = computed' in section 'Elasticity'." :
                          "is for 'Physics = elasticity'; 'Physics' is '" +
                           names_of(physics).physics + "'. Use " + remedy + ".");

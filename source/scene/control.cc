@@ -37,7 +37,7 @@ namespace PeriDeal
       "Time integration: `auto` picks chebyshev (constant loads, symmetric operator), else rkc2, and "
       "sdirk2 for a consistent capacity. Of these three and bdf2 and crank nicolson the steps "
       "adapt to Tolerance; euler and rk4 have a fixed step. Motion (elasticity with `Solver = dynamics`): verlet (explicit; `auto`) and newmark "
-      "(implicit, mean acceleration), both with a fixed step.",
+      "(implicit, average acceleration), both with a fixed step.",
       {"auto",
        "euler",
        "rk4",
@@ -326,7 +326,7 @@ namespace PeriDeal
       "",
       "temperature",
       "Exact solution to compare with: a formula of x, y, z, t, or a name (doc/theory.md lists them) "
-      "such as `bobaru 2012 example 1` or `lattice harmonic(1, 1)`. Of bodies that deform a formula for each component of the displacement, "
+      "such as `bobaru 2012 example 1` or `lattice harmonic(1, 1)`. For elastic bodies a formula for each component of the displacement, "
       "separated by commas, or a name such as `kirsch(1)` or `cantilever(1)`.");
   }
 

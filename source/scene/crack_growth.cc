@@ -43,7 +43,7 @@ namespace PeriDeal
       "time, length/time",
       "Ends that move: `end point: start time, velocity`, and after another comma the time at which it stops; several "
       "separated by `;`. End points are counted from 1 through Segments, in 3D corners through Polygons, whose corners may move outwards "
-      "in their plane. What has been cut stays cut. Bodies that deform find their equilibrium with the cracks as they are then; in motion cracks "
+      "in their plane. What has been cut stays cut. Elastic bodies find their equilibrium with the cracks as they are then; in motion cracks "
       "grow between two steps. Nodes join the zone `cracks` of `Models = coupled` as a crack comes near them.");
     declare(
       "Paths",
@@ -61,7 +61,7 @@ namespace PeriDeal
       "was measured to be the more accurate there. With `Physics = elasticity` bonds of `Scheme = exchange` without crack scaling are "
       "kept, all others cut. `in part`: bonds and removed cells about a tip lose a part of their stiffness, so that the crack is as long as "
       "given wherever in its cell its tip lies; with `Physics = elasticity` in 2D only, not on `faces` and not where cracks grow, heal or bonds break. "
-      "Finite elements that diffuse always cut such pairs.",
+      "Finite elements for diffusion always cut such pairs.",
       {"auto", "cut", "keep", "in part"});
     declare(
       "Growth step",

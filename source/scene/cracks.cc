@@ -146,7 +146,7 @@ namespace PeriDeal
       EntryType::list,
       "",
       "length",
-      "3D: `corner ; corner ; corner ...`, the next polygon after `|`. Each must be planar. A round crack is `disc: centre, normal, radius`, seven numbers: a regular "
+      "3D: `corner ; corner ; corner ...`, the next polygon after `|`. Each must be planar. A penny-shaped crack is `disc: centre, normal, radius`, seven numbers: a regular "
       "polygon of 96 corners with the area of the circle, seen counterclockwise from where the normal points to.");
     declare(
       "Mesh",
@@ -264,10 +264,10 @@ namespace PeriDeal
               "' greater than 0 use 'pairs'.");
     refuse(physics == Physics::elasticity && mesh == CrackMesh::pairs && !cracks.empty(),
            "Mesh",
-           "'pairs' conduct what diffuses; with 'Physics = elasticity' use 'removed' or 'faces'.");
+           "'pairs' is for diffusion; with 'Physics = elasticity' use 'removed' or 'faces'.");
     refuse(physics == Physics::elasticity && conduct(),
            contact_conductance < 0. ? "Transmission" : "Contact conductance",
-           "is for what diffuses; cracks transmit no force with 'Physics = elasticity'.");
+           "is for diffusion; cracks transmit no force with 'Physics = elasticity'.");
     if (mesh == CrackMesh::faces && !tips.empty())
       error("Mesh",
             std::string(

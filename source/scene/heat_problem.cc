@@ -12,7 +12,7 @@ namespace PeriDeal
 {
   namespace
   {
-    /** The values of the sections that heat has in common with the body that deforms. */
+    /** The values of the sections that heat has in common with the elastic body. */
     template <int dim>
     void take_sections(const Scene<dim> &scene, Scene<dim> &heat)
     {
@@ -37,7 +37,7 @@ namespace PeriDeal
     }
 
 
-    /** Sections that are read in another way for what diffuses. */
+    /** Sections that are read in another way for diffusion. */
     template <int dim>
     void read_sections(const Scene<dim> &scene, Scene<dim> &heat)
     {

@@ -77,7 +77,7 @@ namespace PeriDeal
 
     /**
      * What holds on a side of the body or a part of it: components of the displacement, or in
-     * component 0 a value of what diffuses.
+     * component 0 a value of the diffusing quantity.
      */
     std::array<bool, 2> held_on_side(const Scene<2> &scene, const types::boundary_id side)
     {

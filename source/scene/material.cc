@@ -65,7 +65,7 @@ namespace PeriDeal
       "1",
       "mass/length^3",
       "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. With Conductivity it is for the concentration field and the "
-      "weight alone, and the flux is -Conductivity x grad(wetness); with Diffusivity it is part of what conducts and stores. The wetness is continuous where it jumps.");
+      "weight alone, and the flux is -Conductivity x grad(wetness); with Diffusivity it is part of the conductivity and the storage. The wetness is continuous where it jumps.");
     declare("Interface rule",
             EntryType::choice,
             "arithmetic",
@@ -343,11 +343,11 @@ namespace PeriDeal
     if (elastic && !with_heat && is_given("Initial value"))
       error(
         "Initial value",
-        "is for what diffuses; with 'Physics = elasticity' bodies start at rest, or with 'Initial displacement' and 'Initial velocity'" +
+        "is for diffusion; with 'Physics = elasticity' bodies start at rest, or with 'Initial displacement' and 'Initial velocity'" +
           or_computed);
     if (elastic && !with_heat && is_given("Source"))
       error("Source",
-            "is for what diffuses; with 'Physics = elasticity' use 'Body force'" + or_computed);
+            "is for diffusion; with 'Physics = elasticity' use 'Body force'" + or_computed);
     if (!elastic && !text("Body force").empty())
       error("Body force",
             "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");

@@ -32,7 +32,7 @@ namespace PeriDeal
       EntryType::choice,
       "heat",
       "",
-      "What diffuses: heat (temperature), moisture (wetness, the concentration over the saturated one) or electricity "
+      "Diffusion: heat (temperature), moisture (wetness, the concentration over the saturated one) or electricity "
       "(potential); or elasticity (displacement).",
       physics_choices());
     declare(
@@ -238,7 +238,7 @@ namespace PeriDeal
     time.steady = (time.steady && !elasticity.computes_temperature) || !material.stores || rests;
     take_times();
     solver.parse();
-    // a body that deforms and cannot be steady, though it is said to be: its solver says so
+    // an elastic body may not be steady, though it is said to be: its solver says so
     output.parse(time.end_time, this->deforms ? rests : time.steady);
     checkpoint.parse(time.end_time, this->deforms ? rests : time.steady);
     guards.parse();
@@ -256,9 +256,8 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Whether `Surface correction = auto` is crack scaling: where something diffuses beside
-     * insulated cracks that lie still, and every model of the scene gets more accurate by it
-     * (doc/theory.md).
+     * Whether `Surface correction = auto` is crack scaling: for diffusion beside insulated cracks
+     * that lie still, where every model of the scene gets more accurate by it (doc/theory.md).
      */
     template <int dim>
     bool is_scaled_by_itself(const Scene<dim> &scene)

@@ -261,7 +261,7 @@ namespace PeriDeal
     step(u, v, span.now, account.step());
     ++spent.steps;
     // What supports do that jump is not defined where forces are not linear: it depends on what the
-    // body does meanwhile. So that step is none that keeps the energy, however short it is.
+    // body does meanwhile. So that step does not conserve the energy, however short it is.
     bool   jumps = false;
     double drift = 0.;
     if (op.nonlinear() && op.depends_on_time() && !found.has("energy"))
@@ -337,7 +337,7 @@ namespace PeriDeal
       !is_auto && !for_motion && scene.deforms && !solid.computes_temperature,
       "Stepper",
       "'" + time.stepper +
-        "' is for what diffuses; with 'Physics = elasticity' the 'Solver' in section 'Elasticity' decides. Use 'auto', with "
+        "' is for diffusion; with 'Physics = elasticity' the 'Solver' in section 'Elasticity' decides. Use 'auto', with "
         "'dynamics' also 'verlet' or 'newmark', and with 'Temperature change = computed' those of heat.");
     time.refuse(for_motion && !moves,
                 "Stepper",

@@ -15,9 +15,9 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Newmark's method with beta = 1/4, gamma = 1/2 (the mean acceleration): second order, stable
-     * for any step, keeps the energy of linear bodies. Each step solves (4/dt^2 M + K) du = f - K
-     * u - M a, again with K the tangent at the new u where forces are not linear (Newton).
+     * Newmark's method with beta = 1/4, gamma = 1/2 (average acceleration): second order, stable
+     * for any step, conserves the energy of linear bodies. Each step solves (4/dt^2 M + K) du = f -
+     * K u - M a, again with K the tangent at the new u where forces are not linear (Newton).
      */
     class Newmark : public MotionStepper
     {

@@ -25,7 +25,7 @@ namespace PeriDeal
   {
     // Stretch over critical stretch: more shortens a step, where the others break in a motion and
     // where at rest; more would shatter a body in motion. At rest the load of a break follows from
-    // two equilibria, and what breaks next hangs on it.
+    // two equilibria, and what breaks next depends on it.
     constexpr double begins_in_motion = 1.02, begins_at_rest = 1.001, shatters = 1.05;
 
 

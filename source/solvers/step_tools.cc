@@ -102,7 +102,7 @@ namespace PeriDeal
       if (!(mass.local_element(i) > 0.))
         message << "'Density' in section 'Material' is "
                 << (mass.local_element(i) < 0. ? "negative" : "zero") << " at " << op.place_of(i)
-                << ": what moves needs a positive density everywhere. Bodies at rest need none: "
+                << ": motion needs a positive density everywhere. Bodies at rest need none: "
                    "'Solver = linear' or 'conjugate gradients' in section 'Elasticity'.";
     throw_on_all_if_any(mass.get_mpi_communicator(), message.str());
   }

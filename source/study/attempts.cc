@@ -422,8 +422,8 @@ namespace PeriDeal
                  ": finite elements, fine along the cracks, with the pairs of nodes that they do not "
                  "part in the cells that they cut.";
         case Family::zone:
-          return "The cracks lie across cells of a body that deforms: bonds around them, finite "
-                 "elements elsewhere.";
+          return "The cracks lie across cells of an elastic body: bonds around them, finite elements "
+                 "elsewhere.";
         default:
           return "The horizon is a length: peridynamics for the nonlocal solution.";
       }

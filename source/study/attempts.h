@@ -43,9 +43,9 @@ namespace PeriDeal
    * - without cracks quadratic elements on a lattice;
    * - with cracks along faces of a lattice the same with the crack on faces, graded to its ends, so
    *   that the cells there are the cube of those far away;
-   * - with others, what diffuses: linear elements, pairs of nodes in cut cells, scaled, fine along
-   *   the cracks, so that the cells there are the square of those far away; bodies that deform:
-   *   bonds around the cracks on such a mesh.
+   * - with others, diffusion: linear elements, pairs of nodes in cut cells, scaled, fine along the
+   *   cracks, so that the cells there are the square of those far away; elastic bodies: bonds
+   *   around the cracks on such a mesh.
    *
    * Points that are held or loaded are put on nodes where a lattice not much finer does it: a model
    * takes the nearest node.

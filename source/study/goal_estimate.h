@@ -12,8 +12,8 @@ namespace PeriDeal
   /**
    * The same mesh with cubic elements, where the error of quadratic ones in a goal J, a value at a
    * probe, a flow or a stress intensity, is J(u_3) - J(u_2): what dual weights with a dual solution
-   * in cubic elements would give. Nothing for other elements, for fields, for what changes with
-   * time, for a horizon that is a length, and in 3D for bodies that deform, where a third mesh
+   * in cubic elements would give. Nothing for other elements, for fields, for transient
+   * problems, for a horizon that is a length, and in 3D for elastic bodies, where a third mesh
    * costs less. Not collective.
    */
   template <int dim>

@@ -181,7 +181,7 @@ namespace PeriDeal
                     "is 'probes', but 'Probes' in section 'Output' has no point.");
     accuracy.refuse(accuracy.measure == AccuracyMeasure::flow && deforms,
                     "Measure",
-                    "is 'flow', but nothing flows in a body that deforms; 'field', 'probes' and "
+                    "is 'flow', but nothing flows in an elastic body; 'field', 'probes' and "
                     "'stress intensity' are for it.");
     accuracy.refuse(accuracy.measure == AccuracyMeasure::stress_intensity &&
                       (!deforms || dim != 2 || scene.cracks.cracks.empty()),

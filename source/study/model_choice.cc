@@ -250,7 +250,7 @@ namespace PeriDeal
           "room around the ends of cracks for some cells.");
         if (family.n_tried() >= most)
           return std::to_string(most) + " tries";
-        // What changes with time is computed again for the results on the way.
+        // A transient problem is computed again for the results on the way.
         const double runs = scene.time.steady ? 1. : 2.;
         return limit_of(runs * family.expected_time(attempt), family.expected_memory(attempt));
       }

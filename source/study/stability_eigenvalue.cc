@@ -98,7 +98,7 @@ namespace PeriDeal
       std::string obstacle() const override
       {
         if (scene.facts.deforms)
-          return "it is of what diffuses, and the body of this scene deforms";
+          return "it is of diffusion, and this scene is of elasticity";
         if (scene.facts.dim != 2)
           return "it is of plane bodies";
         if (!scene.facts.runs(ModelKind::coupled))

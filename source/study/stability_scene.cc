@@ -128,7 +128,7 @@ namespace PeriDeal
   std::string StabilityScene::no_diffusion_with_bonds() const
   {
     if (facts.deforms)
-      return "it is of what diffuses, and the body of this scene deforms";
+      return "it is of diffusion, and this scene is of elasticity";
     if (!facts.runs(ModelKind::peridynamics))
       return "'Models' has no peridynamics";
     return {};

@@ -75,7 +75,7 @@ namespace PeriDeal
                  [&](const auto &scene) { build(model, scene, action); });
     }
 
-    /** Why what diffuses, in one of the models with bonds alone, does not occur here; or empty. */
+    /** Why diffusion in one of the models with bonds alone does not occur here; or empty. */
     std::string no_diffusion_with_bonds() const;
 
   private:

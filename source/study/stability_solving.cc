@@ -59,7 +59,7 @@ namespace PeriDeal
 
       std::string bound() const override
       {
-        return "'safe' where the iterations converge within those allowed, else the run ends with an error; random points are chosen inside by what the map has found: cells up to 10 times (what diffuses: 100 times) as long as wide, Poisson ratios up to 0.498";
+        return "'safe' where the iterations converge within those allowed, else the run ends with an error; random points are chosen inside by what the map has found: cells up to 10 times (diffusion: 100 times) as long as wide, Poisson ratios up to 0.498";
       }
 
       std::string obstacle() const override
@@ -269,13 +269,13 @@ namespace PeriDeal
 
       std::string bound() const override
       {
-        return "'safe' where heat stays to 1e-10; 'splice' does not keep it, which its certificate says ('warned')";
+        return "'safe' where heat stays to 1e-10; 'splice' does not conserve it, which its certificate says ('warned')";
       }
 
       std::string obstacle() const override
       {
         if (scene.facts.deforms)
-          return "it is of what diffuses, and the body of this scene deforms";
+          return "it is of diffusion, and this scene is of elasticity";
         if (scene.facts.dim != 2)
           return "it is of plane bodies";
         if (!scene.facts.runs(ModelKind::coupled))

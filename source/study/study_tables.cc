@@ -96,7 +96,7 @@ namespace PeriDeal
 
     /**
      * `ux at (80, 0)`: what a column of probes.csv is called here. @param field the name of the
-     * solution of what diffuses
+     * diffusing quantity
      */
     std::string name_at_probe(const std::string &column,
                               const Json        &coordinates,

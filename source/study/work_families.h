@@ -13,11 +13,11 @@ namespace PeriDeal
   /** Among which methods a scene lets one choose. */
   enum class Comparison
   {
-    cracks,       // of what diffuses around cracks
-    solid_cracks, // of bodies with cracks that deform
-    field,        // of what diffuses without cracks
-    solid,        // of bodies that deform, without cracks
-    motion        // of bodies that move, without cracks
+    cracks,       // diffusion around cracks
+    solid_cracks, // elastic bodies with cracks
+    field,        // diffusion without cracks
+    solid,        // elastic bodies without cracks
+    motion        // elastic bodies in motion, without cracks
   };
 
   /** A method with its settings, to be computed on several lattices. */

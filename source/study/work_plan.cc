@@ -159,7 +159,7 @@ namespace PeriDeal
                     (scene.comparison == Comparison::solid_cracks && scene.box.dim() == 2),
                   UserError("command line: --measure: 'opening' and 'stress "
                             "intensity' are of cracks in "
-                            "bodies that deform, in two dimensions. Use 'field'."));
+                            "elastic bodies, in two dimensions. Use 'field'."));
     }
 
 

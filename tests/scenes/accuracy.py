@@ -57,11 +57,11 @@ def check_cases(cases, tolerances, title, share_near=0.9):
 
 def fields():
     check_cases(smooth_cases() + crack_cases(), (1e-2, 1e-3), "Fields with and without insulated cracks")
-    check_cases(elastic_cases(), (1e-2, 1e-3), "Bodies that deform")
+    check_cases(elastic_cases(), (1e-2, 1e-3), "Elastic bodies")
 
 
 def changing():
-    """What changes with time; solutions of a horizon."""
+    """Transient problems; solutions of a horizon."""
     check_cases(transient_cases(), (1e-2, 1e-3), "Fields that change with time", 0.75)  # of four scenes one is seen as 3.3 times as wrong as it is
     check_cases(nonlocal_cases(), (3e-2, 1e-3), "Fields of a horizon that is a length")
     check_cases(moving_cases(), (1e-2, 1e-3), "Waves")

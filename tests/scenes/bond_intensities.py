@@ -47,7 +47,7 @@ BONDS = {"Elasticity/Model": "bond-based"}
 
 
 def plates():
-    """An inclined crack in a plate under tension; a crack that hangs with its own weight."""
+    """An inclined crack in a plate under tension; a crack in a hanging strip under its own weight."""
     table = Comparison("Crack at 30 degrees, peridynamics")
     for name, found in (("state-based, cell centers, m = 3", oblique(30, 0.2, 60, CENTERS, 3)),
                         ("state-based, vertices, m = 4", oblique(30, 0.2, 61, VERTICES, 4)),

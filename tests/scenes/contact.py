@@ -94,7 +94,7 @@ def motion():
 
 
 def bodies():
-    """Two bars that fly at each other under full kinematics exchange their velocities, along any direction, and keep the energy."""
+    """Two bars that fly at each other under full kinematics exchange their velocities, along any direction, and conserve the energy."""
     table = Comparison("Two bars that collide")
     speed, energy = 0.02, 0.5 * 0.1 * 0.02**2
     for case, settings in (("m = 3", {}), ("m = 4, nu = 0.3", {"Peridynamics/Horizon ratio": "3.9", "Material/Poisson ratio": "0.3"}),

@@ -278,7 +278,7 @@ def graded():
                                                   "Material/Density": "1 + x*x"})
     heats = [row["value"] for row in closed.table("totals.csv") if row["quantity"] == "heat content"]
     check(any("adapted" in note for note in closed.summary["notes"]), "insulated body: the mesh was adapted")
-    check_less(max(heats) - min(heats), 1e-11 * heats[0], "insulated body: heat kept through all changes of the mesh")
+    check_less(max(heats) - min(heats), 1e-11 * heats[0], "insulated body: heat conserved through all changes of the mesh")
 
 
 def main():

@@ -46,7 +46,7 @@ def crack_rows(run, model=PD):
 
 
 def rest():
-    """A double cantilever: length by bonds, way of the tip and its place agree to a cell; dissipation per length is that by the beams."""
+    """A double cantilever: length by bonds, path length of the tip and its place agree to a cell; dissipation per length is that by the beams."""
     table = Comparison("Double cantilever")
     cell = 2 / 150
     for model, lattice in ((PD, {}), ("coupled", {"Domain/Cells": "150, 31", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"})):
@@ -56,7 +56,7 @@ def rest():
         length = rows[-1][1]
         check(length > 15 * cell, f"{model}: the crack grows: {length}")
         table.add(f"{model}: tip x, from the end of the given crack", tip_x - 0.5, length, absolute=2.5 * cell)  # measured: 1.8, 0.3 cells: ahead of the tip columns of bonds are broken in part
-        table.add(f"{model}: way of the tip", way, length, absolute=2.5 * cell)
+        table.add(f"{model}: path of the tip", way, length, absolute=2.5 * cell)
         table.add(f"{model}: tip y", tip_y, 0, absolute=1e-12)
         table.add(f"{model}: number of tips", run.total("number of tips", model), 1, absolute=0)
         first = next(row for row in rows if row[1] > 3 * cell)
@@ -70,14 +70,14 @@ def rest():
 
 
 def motion():
-    """A crack that runs and branches: its speed is the slope of the way of its tip, and it has two tips at the end."""
+    """A crack that runs and branches: its speed is the slope of the path length of its tip, and it has two tips at the end."""
     table = Comparison("Branching crack")
     run = run_scene("prm/fracture/branching_crack.prm", {"Output/Write every": "1e-6", "Output/Fields": "none"})
     rows = [row for row in history_of_tip(run) if row[2] > 0]
     check(len(rows) > 25, f"rows with a speed: {len(rows)}")
     # The speed is that of the middle of the last four horizons, so that it lags behind.
     mean = sum(row[2] for row in rows) / len(rows)
-    table.add("mean speed over the slope of the way", mean / ((rows[-1][1] - rows[0][1]) / (rows[-1][0] - rows[0][0])), 1, absolute=0.05)
+    table.add("mean speed over the slope of the path length", mean / ((rows[-1][1] - rows[0][1]) / (rows[-1][0] - rows[0][0])), 1, absolute=0.05)
     fastest = max(row[2] for row in rows)
     check(1500 < fastest < 2000, f"the largest speed: {fastest}, 1800 was measured")
     counts = [row["value"] for row in run.totals if row["quantity"] == "number of tips"]

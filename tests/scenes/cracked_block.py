@@ -8,7 +8,7 @@ SIDES = ("left", "right", "bottom", "top", "front", "back")
 
 
 class Disc:
-    """A round crack in the plane z = 0, under tension along z and shear along x (Sneddon 1946; Fabrikant 1989 writes the field so)."""
+    """A penny-shaped crack in the plane z = 0, under tension along z and shear along x (Sneddon 1946; Fabrikant 1989 writes the field so)."""
 
     def __init__(self, nu, radius, tension, shear):
         self.nu, self.radius, self.tension, self.shear = nu, radius, tension, shear

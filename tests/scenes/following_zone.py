@@ -36,14 +36,14 @@ def both(scene, settings, other="everywhere"):
 
 
 def path_apart(a, b):
-    """From each piece of the new crack of either run to the nearest one of the other: the longest way."""
+    """From each piece of the new crack of either run to the nearest one of the other: the longest distance."""
     places = [[[sum(axis) / len(axis) for axis in zip(*corners)] for corners, *_ in facets_of(run, MODEL)] for run in (a, b)]
     return max(min(math.dist(p, q) for q in other) for one, other in (places, places[::-1]) for p in one)
 
 
 def compare(table, name, scene, settings, force, cell, share, other="everywhere", joining=3e-3, bonds=150, breaking="at rest", dissipated=0.01):
     """
-    Largest force, dissipation, broken bonds and the way of the crack with a zone that follows, against bonds everywhere; force: its side, or none.
+    Largest force, dissipation, broken bonds and the path of the crack with a zone that follows, against bonds everywhere; force: its side, or none.
 
     At rest, where the most stretched bonds break first and a step of the load does not count: a crack that waits at a column for some
     percent of the load goes on in either of two ways by chance where others break in a motion.
@@ -113,7 +113,7 @@ def motion():
 
 
 def heat():
-    """A strip that tears in the middle conducts no heat across, and as before where broken bonds conduct; heat is kept to round-off."""
+    """A strip that tears in the middle conducts no heat across, and as before where broken bonds conduct; heat is conserved to round-off."""
     table = Comparison("Torn strip, coupled")
     strip = {"Models": MODEL, "Domain/Cells": "41, 12", "Output/Fields": "none"}
     for zone in ("follow", "everywhere"):

@@ -202,7 +202,7 @@ def branching(lattice, steps):
 def motion():
     branching({"Domain/Cells": "100, 40"}, ("1.8e-7", "0.9e-7"))
     table = Comparison("Branching crack, newmark")
-    # Faces that begin to touch keep energy to order dt^2 alone.
+    # Faces that begin to touch conserve energy to order dt^2 alone.
     newmark = run_scene("prm/fracture/branching_crack.prm", {"Domain/Cells": "50, 20", "Time/Stepper": "newmark", "Time/Time step": "4e-7",
                                                              "Output/Write every": "", "Output/Fields": "none", "Peridynamics/Horizon ratio": "3",
                                                              "Material/Fracture energy": "60", "Elasticity/Contact": "false"})
@@ -227,7 +227,7 @@ def steps():
         broken.append(run.model(PD)["energy balance"][BROKEN])
         check(run.model(PD)["steps"] == round(1 / float(step)), f"steps of {step}: {run.model(PD)['steps']}")
     check(max(broken) - min(broken) <= 0.05 * max(broken), f"bonds broken with load steps of 1, 0.1 and 0.02: {broken}")
-    # Faces that begin to touch keep energy to order dt^2 alone.
+    # Faces that begin to touch conserve energy to order dt^2 alone.
     moving = {**COARSE, "Elasticity/Contact": "false", "Elasticity/Solver": "dynamics", "Time/Stepper": "newmark", "Time/Time step": "0.004", "Material/Density": "0.1"}
     run = run_scene("prm/fracture/centre_crack.prm", moving)
     energy = run.model(PD)["energy balance"]

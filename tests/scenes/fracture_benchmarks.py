@@ -35,7 +35,7 @@ def first_break(difference, strain):
 
 
 def quench():
-    """A quenched plate breaks first when theory says, has more and longer cracks when it was hotter, and keeps its heat."""
+    """A quenched plate breaks first when theory says, has more and longer cracks when it was hotter, and conserves its heat."""
     table = Comparison("Quenched alumina, half as long and on coarse cells")
     counts = {}
     for hot in (300, 600):

@@ -85,7 +85,7 @@ def same_on(first, second, model):
 
 
 def disc():
-    """A round crack under tension and shear."""
+    """A penny-shaped crack under tension and shear."""
     crack = Disc(0.2, 0.55, 1, 0.6)
     runs = [run_scene(SCENE, {**crack.entries(), **body(30, CENTERS, 3), "Solver/Tolerance": "1e-10"}, ranks=n) for n in (1, 2)]
     result = Comparison("Disc, peridynamics")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Bodies that deform on graded meshes (`Coarsening`), beside the whole lattice: at rest, warm, in motion, with cracks that grow.
+"""Elastic bodies on graded meshes (`Coarsening`), beside the whole lattice: at rest, warm, in motion, with cracks that grow.
 
     graded_bodies.py crack | loads | motion | ranks | mistakes
 """

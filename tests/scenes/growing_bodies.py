@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Cracks whose way is prescribed in bodies that deform: a strip, whose energy per length is known.
+"""Cracks with a prescribed path in elastic bodies: a strip, whose energy per length is known.
 
     growing_bodies.py strip | mesh | motion | ranks | mistakes
 """
@@ -18,7 +18,7 @@ MOTION = {"Elasticity/Solver": "dynamics", "Elasticity/Contact": "false", "Mater
 
 
 def strip():
-    """What is set free, the stress intensity on the way, and the end against a crack that has been there from the start."""
+    """The energy released, the stress intensity along the path, and the end against a crack that has been there from the start."""
     table = Comparison("A crack that grows through a strip, over what is exact")
     # Measured: -0.03, 0.81 and -1.08 %; on finer cells -0.54 %.
     run = run_scene(SCENE)
@@ -33,7 +33,7 @@ def strip():
     table.add("coupled, 43 cells: energy", finer.total("energy dissipated", COUPLED, time=1) / (2 * PER_LENGTH), 1, absolute=0.007)
     for model in (FE, COUPLED):
         on_the_way = [run.total("stress intensity I at crack 1 end 2", model, time=k / 10) / INTENSITY for k in range(2, 10)]
-        table.add(f"{model}: stress intensity, mean on the way", sum(on_the_way) / len(on_the_way), 1, absolute=0.02)
+        table.add(f"{model}: stress intensity, mean along the path", sum(on_the_way) / len(on_the_way), 1, absolute=0.02)
         check(max(abs(k - 1) for k in on_the_way) < 0.05, f"{model}: the stress intensity stays the same: {on_the_way}")
     # Until t = 0.95, so that the crack has stopped when the last span of time begins.
     stopped = run_scene(SCENE, {"Cracks/Growth": "2: 0, 2,0, 0.95", "Output/Fields": "none"})

@@ -183,7 +183,7 @@ RADIUS = 0.5
 
 
 def sneddon():
-    """Displacements of a body with a round crack that is pulled along z by 1, as formulas (Fabrikant's form of Sneddon's solution, and the uniform stress)."""
+    """Displacements of a body with a penny-shaped crack that is pulled along z by 1, as formulas (Fabrikant's form of Sneddon's solution, and the uniform stress)."""
     mu = 200 / 2 / (1 + NU)
     r, d = "sqrt(x^2+y^2)", RADIUS
     far, near = f"sqrt(({d}+{r})^2+z^2)", f"sqrt(({d}-{r})^2+z^2)"
@@ -205,7 +205,7 @@ def round_crack(n, model, more=None):
     corners, values = cells_of(run, model)
     middle = corners.mean(1)
     size = np.ptp(corners, axis=1)
-    # Cells between the lips, as far as the crack reaches into them.
+    # Cells between the faces, as far as the crack reaches into them.
     nearest = corners.min(1)
     kept = (np.abs(middle[:, 2]) > 0.25 * size[:, 2]) | (np.hypot(nearest[:, 0], nearest[:, 1]) >= RADIUS)
     inner, outer = 0.45 * RADIUS, 0.9 * RADIUS
@@ -259,7 +259,7 @@ def table():
             print(f"| {specimen.name} | {n} | " + " | ".join(percent(gap) for gap in row) + " |", flush=True)
     for n in (20, 40, 80):
         row = [round_crack(n, FE), None, round_crack(n, COUPLED), round_crack(n, PD) if n < 80 else None]
-        print(f"| round crack | {n} | " + " | ".join("" if gap is None else percent(gap) for gap in row) + " |", flush=True)
+        print(f"| penny-shaped crack | {n} | " + " | ".join("" if gap is None else percent(gap) for gap in row) + " |", flush=True)
 
 
 if __name__ == "__main__":

@@ -172,7 +172,7 @@ def scene_mistakes(folder):
          ["'Displacement'", "translation in y, rotation about z"]),
         *[(f"part cut off, {model}", {**CUT_OFF, "Models": model}, ["holds a part", "it has no equilibrium", "one of them at (", "Cracks", "'Displacement'"])
           for model in ("finite elements", "peridynamics", "coupled")],
-        ("part that hangs on a hinge", {**CUT_OFF, "Boundary conditions/Parts": "pin: point 0, 1", "Boundary conditions/Displacement": "bottom: 0, 0; pin: 0, 0"},
+        ("part on a hinge", {**CUT_OFF, "Boundary conditions/Parts": "pin: point 0, 1", "Boundary conditions/Displacement": "bottom: 0, 0; pin: 0, 0"},
          ["holds a part", "it has no equilibrium"]),
         ("empty grip", {**ELASTIC, "Boundary conditions/Displacement": "left: 0, 0; top: free, free"}, ["'Displacement'", "'top'", "empty grip"]),
         ("traction on a grip", {**ELASTIC, "Boundary conditions/Traction": "left: 1, 0"}, ["'Traction'", "'left'", "displacement in x"]),
@@ -267,7 +267,7 @@ def scene_mistakes(folder):
         ("tips in part on faces", {**ELASTIC, **CRACK, **IN_PART, "Cracks/Mesh": "faces"}, ["'Bonds through tips'", "'in part'", "'Mesh = faces'"]),
         ("tips in part where bonds break", {**ELASTIC, **CRACK, **IN_PART, "Models": "peridynamics", "Material/Fracture energy": "1"},
          ["'Bonds through tips'", "'in part'", "'Fracture energy'"]),
-        ("tips in part of what diffuses", {**CRACK, **IN_PART}, ["'Bonds through tips'", "'in part'", "'Physics = elasticity'"]),
+        ("tips in part in diffusion", {**CRACK, **IN_PART}, ["'Bonds through tips'", "'in part'", "'Physics = elasticity'"]),
         ("crack outside", {"Cracks/Segments": "2,2 ; 3,3"}, ["'Segments'", "outside the body"]),
         ("crack of one point", {"Cracks/Segments": "0.2,0.2"}, ["'Segments'", "two points"]),
         ("crack of no length", {"Cracks/Segments": "0.2,0.2 ; 0.2,0.2"}, ["'Segments'", "no length"]),

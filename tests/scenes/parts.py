@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Conditions on parts of sides, regions and points: areas and totals, parts that are whole sides, meshes with names, velocities, holes, round cracks.
+"""Conditions on parts of sides, regions and points: areas and totals, parts that are whole sides, meshes with names, velocities, holes, penny-shaped cracks.
 
     parts.py loads | whole | heat | meshes | motion | holes | ranks | scenes
 """
@@ -249,7 +249,7 @@ def scenes():
 
 
 def body_force():
-    """A strip that hangs with a crack in its middle: the stress there is that of the weight below, and K that of a traction of that size."""
+    """A hanging strip with a crack in its middle: the stress there is that of the weight below, and K that of a traction of that size."""
     base = {**ELASTIC, "Domain/Lower corner": "-1, -2", "Domain/Upper corner": "1, 2", "Domain/Cells": "81, 161", "Cracks/Segments": "-0.3,0 ; 0.3,0", "Models": FE,
             BC + "Displacement": "top: free, 0 ; corner: 0, free", BC + "Parts": "corner: point -1, 2", "Output/Probes": "", "Material/Poisson ratio": "0"}
     hung = run_scene(HEAT, {**base, "Initial and source/Body force": "0, -0.5"})

@@ -261,7 +261,7 @@ def check_mistakes():
         file.write(b"\n")
     refused(run("papers/le_2014/cooling.prm", other, of_image, ["--resume"]), "'Image' in section 'Domain'", "changed")
 
-    # Bonds are numbered by the crack of the start, which hangs on the steps of its growth and these on the end.
+    # Bonds are numbered by the crack of the start, which depends on the steps of its growth and these on the end.
     growth, other = {"Models": "peridynamics", "Domain/Cells": "30, 5", "Cracks/Growth": "2: 0, 2,0", "Cracks/Growth step": "0.3", "Output/Write at": ""}, new_folder()
     check_stopped(run("elasticity/growing_crack.prm", other, {**growth, **stop}), other, "a crack that grows")
     refused(run("elasticity/growing_crack.prm", other, {**growth, "Time/End time": "1.1"}, ["--resume"]), "'End time' in section 'Time'", "grow")

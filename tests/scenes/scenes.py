@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
 """
-Every scene of prm/ but those of prm/failures, without field files: it runs to its end, keeps its heat or its forces in balance, and its comment teaches.
+Every scene of prm/ but those of prm/failures, without field files: it runs to its end, conserves its heat or its forces in balance, and its comment teaches.
 
     scenes.py [PART OF A NAME]      as they are, but those that take long on coarser lattices
     scenes.py --slow                those that take long, as they are

@@ -4,7 +4,7 @@
 
 A product of sines is a wave of one frequency w in both models: in peridynamics by one sum over the family (tests/reference/harmonics.py), in finite
 elements with lumped masses by the symbol of their stencil. Its amplitude at first is 1, and that of the lumped projection of the initial value in finite
-elements, with Gauss' rule of two points. Central differences swing with W, sin(W dt/2) = w dt/2, and their energy falls short of that
+elements, with Gauss' rule of two points. Central differences oscillate with W, sin(W dt/2) = w dt/2, and their energy falls short of that
 of the start by (w dt/2)^2 sin(W t)^2 of it: all to round-off.
 """
 

@@ -201,13 +201,13 @@ def smooth():
     zone = write("zone.prm", text + "subsection Coupling\n  set Zone = 0.3 - sqrt((x-0.5)^2+(y-0.5)^2)\nend\n")
     _, _, directory = study(zone, *few, "--no-auto", "--only", "coupled", output="zone")
     check([row["family"] for row in results(directory)["rows"]][::2] == ["coupled, m = 2, zone of the scene", "coupled, m = 3, zone of the scene"], "a zone by a formula")
-    # A body that deforms.
+    # An elastic body.
     _, _, directory = study("prm/elasticity/bar_2d.prm", *few, "--no-auto", "--only", "FEM, degree 1", "FEM, degree 2", "PD completed, m = 3", "reference", output="solid")
     check(len(results(directory)["rows"]) >= 5, "a bar")
 
 
 def in_time():
-    """Of what changes in time: the error in time alone, by stepper."""
+    """Transient problems: the error in time alone, by stepper."""
     _, _, directory = study("prm/heat/harmonic_2d.prm", "--cells", "8, 8 | 16, 16", "--no-auto", "--only", "FEM, degree 1", "in time", "-s", "Reference/Solution=classical harmonic(1,2)",
                             "-s", "Time/Tolerance=1e-6", output="in_time")
     data = results(directory)["in time"]
@@ -262,7 +262,7 @@ def exact():
 
 
 def body():
-    """Bodies that deform: the error of the displacement at the nodes, against a solution and, without, against finite elements with the crack on faces."""
+    """Elastic bodies: the error of the displacement at the nodes, against a solution and, without, against finite elements with the crack on faces."""
     _, _, directory = study("prm/elasticity/coupled_crack.prm", "--cells", "11, 11 | 21, 21", "--budget", "20000", output="body")
     data = results(directory)
     check(data["reference"] == {"kind": "exact solution"}, f"reference: {data['reference']}")
@@ -287,7 +287,7 @@ def body():
 
 
 def measures():
-    """Openings and stress intensities of a crack in a body that deforms."""
+    """Openings and stress intensities of a crack in an elastic body."""
     few = ["--cells", "21, 21 | 41, 41", "--budget", "8000", "--only", "reference", "FEM, crack on faces", "FEM, cells removed", "coupled, m = 3, c = 1, scaled"]
     crack = "prm/elasticity/coupled_crack.prm"
     _, _, directory = study(crack, "--measure", "stress intensity", *few, "auto", output="intensity")
@@ -328,7 +328,7 @@ def mistakes():
             ("one number", None, ["--cells", "9 | 17"], ["--cells", "has 1 number"]),
             ("reference off the crack", None, ["--reference", "9, 9 | 18, 18 | 36, 36"], ["--reference", "three lattices"]),
             ("an unknown measure", None, ["--measure", "openings"], ["--measure", "'openings'", "Did you mean 'opening'?"]),
-            ("no opening of what diffuses", None, ["--measure", "opening"], ["--measure", "bodies that deform"]),
+            ("no opening in diffusion", None, ["--measure", "opening"], ["--measure", "elastic bodies"]),
             ("no budget", None, ["--budget", "0"], ["--budget"]),
             ("entry of the study", None, ["-s", "Domain/Cells=9, 9"], ["'Domain/Cells=9, 9'", "varies"]),
             ("--vary", None, ["--vary", "Domain/Cells=9, 9"], ["--vary", "--cells"]),

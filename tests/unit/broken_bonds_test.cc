@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// What conducts follows what a solid on the same nodes breaks.
+// Diffusion follows what a solid on the same nodes breaks.
 
 #include <deal.II/base/mpi.h>
 

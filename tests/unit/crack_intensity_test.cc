@@ -24,7 +24,7 @@ namespace
   constexpr double K_I = 1.3, K_II = -0.7;
 
 
-  /** A plane body with fields that leave the lips of a crack along x < 0 without traction. */
+  /** A plane body with fields that leave the faces of a crack along x < 0 without traction. */
   struct CrackedBody
   {
     PlaneState plane;

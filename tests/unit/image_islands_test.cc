@@ -18,7 +18,7 @@ namespace PeriDeal
 
   TEST(Image, islands_are_named_and_removed)
   {
-    // 3 cells that hang in the air.
+    // 3 cells that are not attached to anything.
     const Image    image({"99900099", "99000099", "99050099", "99055099", "99000099", "99999999"});
     const Settings body = image.settings({{"Domain/Nodes", "vertices"}});
     expect_parts(fault(body + elastic()),

@@ -17,7 +17,7 @@ namespace PeriDeal
     {
       scene.general.set("Dimension", std::to_string(dim));
       scene.cracks.set("Nodes on cracks", "left"); // the lattice is the one asked for
-      // Nor are bonds of what diffuses corrected by themselves.
+      // Nor are bonds of diffusion corrected by themselves.
       if (std::none_of(settings.begin(), settings.end(), [](const auto &entry) {
             return entry.second == "elasticity";
           }))

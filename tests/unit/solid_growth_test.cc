@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-// Bodies that deform, whose cracks grow: at last they are those whose cracks have been so long from
-// the start.
+// Elastic bodies whose cracks grow: at last they are those whose cracks have been so long from the
+// start.
 
 #include <deal.II/base/mpi.h>
 

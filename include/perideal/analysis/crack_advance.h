@@ -30,25 +30,25 @@ namespace PeriDeal
   struct CrackAdvance
   {
     dealii::Point<dim> tip;
-    double             length = 0.; // of the shortest way along the crack from the front to the tip
+    double             length = 0.; // of the shortest path along the crack, from front to tip
     double             speed  = 0.;
     unsigned int       n_tips = 0;
   };
 
 
   /**
-   * Facets have been reached from a front if they hang together, with gaps of at most @p reach
-   * between their corners and at the front; a corner belongs to the nearest front along this way.
+   * Facets have been reached from a front if they are connected, with gaps of at most @p reach
+   * between their corners and at the front; a corner belongs to the nearest front along this path.
    * The tip is the farthest one; of several that are equally far (to 0.05 reach) the mean of those
-   * that hang together, of separate ones the first in space. Where no other corner of the same
-   * front within the reach is farther, that is a tip, too: `n_tips` counts those that hang
-   * together as one.
+   * that are connected, of separate ones the first in space. Where no other corner of the same
+   * front within the reach is farther, that is a tip, too: `n_tips` counts those that are connected
+   * as one.
    *
-   * The speed is that of a straight line fitted, in the mean over all instants, to the way as a
-   * function of time since the crack was 4 reach shorter; 0 before it has grown by one.
+   * The speed is that of a straight line fitted, in the mean over all instants, to the path length
+   * as a function of time since the crack was 4 reach shorter; 0 before it has grown by one.
    *
    * The same on all processes if facets are. Not collective.
-   * @param time of now
+   * @param time the current one
    */
   template <int dim>
   std::vector<CrackAdvance<dim>> find_advances(const std::vector<CrackFacet<dim>> &facets,
@@ -58,7 +58,7 @@ namespace PeriDeal
 
   /**
    * The speed of what has come so far at some times, @p now the last one, over the last @p span of
-   * its way.
+   * its path.
    */
   double fitted_speed(std::vector<std::pair<double, double>> times_and_ways,
                       const double                           span,

@@ -13,7 +13,7 @@
 namespace PeriDeal
 {
   /**
-   * A known solution of a problem, to measure errors against: the value of what diffuses, or the
+   * A known solution of a problem, to measure errors against: the diffusing quantity, or the
    * displacement of a body. Coordinates are those of the scene.
    */
   class ExactSolution

@@ -105,7 +105,7 @@ namespace PeriDeal
   {
   public:
     /**
-     * @param core beside lips so near nothing crosses the plane (CrackEndIntegral)
+     * @param core beside crack faces so near nothing crosses the plane (CrackEndIntegral)
      * @param cell of CoreWeight
      */
     FrontIntegral(const FrontPlace &at, const double core, const double cell, const Moduli &moduli);
@@ -133,7 +133,7 @@ namespace PeriDeal
     /** On the axes there; behind the front no farther than the crack on the side of a node. */
     FrontPlace::Local from_front(const RingPoint<3> &point, double &angle) const;
 
-    /** That no stress crosses the plane near to a lip. */
+    /** That no stress crosses the plane near to a crack face. */
     dealii::Tensor<2, 3> beside_lips(dealii::Tensor<2, 3>     u,
                                      const FrontPlace::Local &x,
                                      const double             reach,

@@ -14,8 +14,9 @@ namespace PeriDeal
    *
    *   r^(n/2) cos(n phi/2), r^(n/2) sin(n phi/2),   n = lowest, ..., highest,
    *
-   * r, phi the polar coordinates about the end, |phi| = pi on the lips, and r^2: the expansion of
-   * harmonic fields that may jump across the crack, and of those with a uniform source.
+   * r, phi the polar coordinates about the end, |phi| = pi on the crack faces, and r^2: the
+   * expansion of harmonic fields that may jump across the crack, and of those with a uniform
+   * source.
    */
   class HalfPowerFit
   {

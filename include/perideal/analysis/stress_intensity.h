@@ -63,7 +63,7 @@ namespace PeriDeal
    * with the near-tip fields u^m of unit intensity in mode m, E' = E in plane stress, E/(1 - nu^2)
    * in plane strain, and q falling from 1 at the inner radius to 0 at the outer one, with two
    * derivatives that do not jump: cells there may be coarse. They hold for one elastic material in
-   * the ring without forces on the lips.
+   * the ring without forces on the crack faces.
    *
    * What the slope of s does is as much from every annulus down to the end, where no model has the
    * fields: within some cells, or a horizon, s and the trace of sigma are those of HalfPowerFit
@@ -116,9 +116,9 @@ namespace PeriDeal
     double part_of_fits(const double r) const;
 
     /**
-     * The gradient of a point so near to a lip, at most @p reach, that no stress crosses its line,
-     * to second order in the distance: what bonds or cells beside the crack are stretched by across
-     * it is not that of a continuum.
+     * The gradient of a point so near to a crack face, at most @p reach, that no stress crosses its
+     * line, to second order in the distance: what bonds or cells beside the crack are stretched by
+     * across it is not that of a continuum.
      */
     dealii::Tensor<2, 2> beside_lips(dealii::Tensor<2, 2>        u,
                                      const dealii::Tensor<1, 2> &x,

@@ -11,7 +11,7 @@ namespace PeriDeal
 {
   /**
    * Bonds that another physics of the same model has broken, and what they let through: the view
-   * that what diffuses has of the BondState of a solid. Pairs of nodes by their global numbers, all
+   * that diffusion has of the BondState of a solid. Pairs of nodes by their global numbers, all
    * of the body on every process. Not collective.
    */
   class BrokenBonds

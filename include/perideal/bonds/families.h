@@ -25,8 +25,8 @@ namespace PeriDeal
 
 
   /**
-   * The families of the nodes: who is bonded to whom, with which weight, and which bonds the cracks
-   * of now cut. What diffuses and what deforms have them in common; neither knows the other's
+   * The families of the nodes: who is bonded to whom, with which weight, and which bonds the
+   * current cracks cut. Diffusion and elasticity have them in common; neither knows the other's
    * material.
    */
   template <int dim>

@@ -10,7 +10,7 @@
 namespace PeriDeal
 {
   /*
-   * Bounds beyond which a run of what diffuses says in a note what is wrong: for the notes, and for
+   * Bounds beyond which a diffusion run says in a note what is wrong: for the notes, and for
    * studies that draw them.
    */
 

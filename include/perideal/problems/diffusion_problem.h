@@ -22,7 +22,7 @@ namespace PeriDeal
   template <int dim>
   class DiffusionGuards;
 
-  /** What diffuses, in one model of a scene. Functions are collective. */
+  /** Diffusion in one model of a scene. Functions are collective. */
   template <int dim>
   class DiffusionProblem : public Problem<dim>
   {

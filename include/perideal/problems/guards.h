@@ -86,9 +86,9 @@ namespace PeriDeal
 
 
   /**
-   * Watches that what diffuses does not grow by the steps alone. That costs a pass over the values
-   * at each look. Where they have left the range that they had by as much again, an application
-   * tells why:
+   * Watches that the diffusing quantity does not grow by the steps alone. That costs a pass over
+   * the values at each look. Where they have left the range that they had by as much again, an
+   * application tells why:
    *
    * - `maximum principle`: nothing enters but through given values, and these are constant, so that
    *   no value may leave the range of the start;

@@ -70,7 +70,7 @@ namespace PeriDeal
     virtual dealii::Point<dim> position(const unsigned int node) const = 0;
 
     /**
-     * What an owned node has of the body's volume; not of finite elements alone for what diffuses.
+     * What an owned node has of the body's volume; not of finite elements alone for diffusion.
      * Not collective.
      */
     virtual double volume(const unsigned int node) const = 0;

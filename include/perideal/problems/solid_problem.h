@@ -36,7 +36,7 @@ namespace PeriDeal
   class HeatOfDeformation;
 
   /**
-   * A body that deforms, in one model of a scene: dim unknowns at each node, interleaved. Functions
+   * An elastic body in one model of a scene: dim unknowns at each node, interleaved. Functions
    * are collective.
    */
   template <int dim>
@@ -136,7 +136,7 @@ namespace PeriDeal
     /** The stress of each own node or cell, with its phase. */
     virtual std::vector<StressSample> stress_samples() const = 0;
 
-    /** Heat that deforming the body has set free since the start; null: that is not computed. */
+    /** Heat that deforming the body has released since the start; null: that is not computed. */
     const HeatOfDeformation<dim> *heat_of_deformation() const
     {
       return warming.get();

@@ -16,7 +16,7 @@ namespace PeriDeal
     nothing,   // they end there
     mirrored,  // as in the mirror image of the body, at planes of symmetry
     continued, // by a linear continuation of its displacement
-    in_part    // by half of that; a quarter beyond a continued side, too, nothing beyond two of these
+    in_part    // by half of that; a quarter where a side is continued, too; not beyond two
   };
 
 

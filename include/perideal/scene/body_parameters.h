@@ -34,12 +34,12 @@ namespace PeriDeal
     ElasticityControl       elasticity;
     FiniteElements          finite_elements;
 
-    bool   deforms   = false; // a solid; else something diffuses
+    bool   deforms   = false; // a solid; else diffusion
     bool   steady    = false; // nothing is stored
-    double time_step = -1.;   // of what diffuses with a given step; negative: none is given
+    double time_step = -1.;   // of diffusion with a given step; negative: none is given
 
     /**
-     * What diffuses: a solid on the same nodes may break its bonds (ChangeSet::broken), which then
+     * Diffusion: a solid on the same nodes may break its bonds (ChangeSet::broken), which then
      * conduct this part; 1: as before, so that there is nothing to follow.
      */
     double broken_bonds_conduct = 1.;
@@ -82,8 +82,8 @@ namespace PeriDeal
 
 
   /**
-   * A body in which something diffuses, as a program describes it: the defaults of a scene, bonds
-   * that end at its surface. Conductivity, density and heat capacity are 1 until they are set.
+   * A body with diffusion, as a program describes it: the defaults of a scene, bonds that end at
+   * its surface. Conductivity, density and heat capacity are 1 until they are set.
    */
   template <int dim>
   struct HeatParameters : BodyParameters<dim>
@@ -92,7 +92,7 @@ namespace PeriDeal
   };
 
 
-  /** A body that deforms, likewise. Its moduli have to be set (Material::set_moduli()). */
+  /** An elastic body, likewise. Its moduli have to be set (Material::set_moduli()). */
   template <int dim>
   struct SolidParameters : BodyParameters<dim>
   {

@@ -71,7 +71,7 @@
 
     /**
      * For programs: a value, or what enters by the kind with this entry (`Flux`, `Convection`, ...)
-     * and its formulas, on the side with this boundary id of what diffuses; a displacement
+     * and its formulas, on the side with this boundary id, for diffusion; a displacement
      * (components without a value are free) or a traction of a solid. Where two sides with values
      * meet, the one given first holds.
      */

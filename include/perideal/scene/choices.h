@@ -68,7 +68,7 @@ namespace PeriDeal
     volume, // this and the next: elasticity
     moments,
     fictitious_nodes,
-    automatic // elasticity; what diffuses has none
+    automatic // elasticity; diffusion has none
   };
 
   enum class CorrectionDirection

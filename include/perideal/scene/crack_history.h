@@ -76,7 +76,7 @@ namespace PeriDeal
 
     const std::vector<double> &events() const;
 
-    /** The longest way that a tip goes between two events. */
+    /** The longest path of a tip between two events. */
     double longest_advance() const;
 
   private:

@@ -42,7 +42,7 @@ namespace PeriDeal
 
 
   /**
-   * The pieces of all cracks at time t, the whole way of each tip included. In 2D a crack is
+   * The pieces of all cracks at time t, the whole path of each tip included. In 2D a crack is
    * followed from its first end to its second, so that all of its pieces have the same left side;
    * pieces in one line are one. Pieces without length are left out.
    *

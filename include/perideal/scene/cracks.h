@@ -109,7 +109,7 @@ namespace PeriDeal
     bool conduct() const;
 
     /**
-     * The pieces of all cracks at time t, the whole way of each tip included. With @p cut_at_tips
+     * The pieces of all cracks at time t, the whole path of each tip included. With @p cut_at_tips
      * their ends are closed: what touches a tip is cut. Ends on a side of the box always are, and
      * without a box all ends.
      */
@@ -159,7 +159,7 @@ namespace PeriDeal
 
     void check_tips() const;
 
-    /** 2D: no tip goes back on its own way; @p last is a time after all stops. */
+    /** 2D: no tip goes back on its own path; @p last is a time after all stops. */
     void check_turns(const double last) const;
 
     /** 3D: polygons stay in their planes and grow from each of the tips' stops to the next. */

@@ -85,8 +85,8 @@ namespace PeriDeal
                const bool                             needs_storage = true);
 
     /**
-     * Of a body that deforms and whose temperature changes in time: what parse() has allowed to be
-     * 0 must not be. Throws UserError.
+     * Of an elastic body whose temperature changes in time: what parse() has allowed to be 0 must
+     * not be. Throws UserError.
      */
     void require_storage();
 

@@ -87,7 +87,7 @@ namespace PeriDeal
     unsigned int degree              = 1;
     bool         consistent_capacity = false;
 
-    /** @param with_heat a body that deforms has a temperature that is computed */
+    /** @param with_heat an elastic body has a temperature that is computed */
     void parse(const Physics physics = Physics::heat, const bool with_heat = false);
   };
 } // namespace PeriDeal

@@ -46,7 +46,7 @@ namespace PeriDeal
 
   /**
    * One more physics, for a program that brings its own; scenes may name it from then on. Its
-   * sections are those of what diffuses. How it is computed: set_problem_factory(). To be called
+   * sections are those of diffusion. How it is computed: set_problem_factory(). To be called
    * once for each name, before there is a scene. Not collective.
    */
   Physics add_physics(const PhysicsNames &names);

@@ -91,7 +91,7 @@ namespace PeriDeal
 
     /**
      * What `Temperature change = computed` solves first: the values of the same sections, with
-     * `Physics = heat` and without what deforms the body; else null. No text is parsed for it but
+     * `Physics = heat` and without what acts on the solid; else null. No text is parsed for it but
      * that of cracks and peridynamics, which mean something else there.
      */
     std::shared_ptr<const Scene<dim>> heat;

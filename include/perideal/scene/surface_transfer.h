@@ -17,7 +17,7 @@ namespace PeriDeal
   struct SurfaceTransfer;
 
   /**
-   * A kind of condition on the sides of what diffuses that prescribes no value: an entry of section
+   * A kind of condition on the sides for diffusion that prescribes no value: an entry of section
    * `Boundary conditions`, `side: formula, formula`, several separated by `;`. Here stands all that
    * is particular to it; models, balance, checks, summary and report know a SurfaceTransfer.
    */
@@ -39,7 +39,7 @@ namespace PeriDeal
 
 
   /**
-   * What enters through one side or part where u is the value of what diffuses, per area and time,
+   * What enters through one side or part where u is the diffusing quantity, per area and time,
    * positive into the body:
    *
    *   q(x, t, u) = f(x, t) + h(x) (a(x, t) - u).

@@ -42,7 +42,7 @@ namespace PeriDeal
 
 
   /**
-   * Steps that keep the heat where the capacity depends on the temperature. A step with the
+   * Steps that conserve the heat where the capacity depends on the temperature. A step with the
    * capacity C of its beginning brings C_i (v_i - u_i) to a free unknown; what it then holds more
    * is the integral of its capacity from u to v, which is another. correct() moves v until both
    * agree: one step of Newton's method, with the slope that the two capacities tell. What is left

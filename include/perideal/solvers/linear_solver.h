@@ -73,7 +73,7 @@ namespace PeriDeal
   template <int dim>
   struct Scene;
 
-  /** Throws UserError for a scene of what diffuses that has no steady state. Not collective. */
+  /** Throws UserError for a scene of diffusion that has no steady state. Not collective. */
   template <int dim>
   void require_steady_state(const Scene<dim> &scene);
 

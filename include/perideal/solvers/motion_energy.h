@@ -55,7 +55,7 @@ namespace PeriDeal
     /**
      * All have to outlive this object.
      * @param held the prescribed unknowns
-     * @param c    steps of linear bodies keep the energy H - c dt^2 a.Ma
+     * @param c    steps of linear bodies conserve the energy H - c dt^2 a.Ma
      */
     MotionAccount(ElasticOperator           &op,
                   const std::vector<double> &inverse_mass,

@@ -18,7 +18,7 @@ namespace PeriDeal
   class MotionStepper
   {
   public:
-    /** @param c steps of linear bodies keep the energy H - c dt^2 a.Ma */
+    /** @param c steps of linear bodies conserve the energy H - c dt^2 a.Ma */
     MotionStepper(ElasticOperator &op, const double dt, const double c);
     virtual ~MotionStepper() = default;
 

@@ -126,7 +126,7 @@ namespace PeriDeal
     Zone<dim>                at_end  = zone;
     at_end.set_cracks(history.pieces(last));
     zone.set_cracks(history.pieces(history.representative(0.)));
-    // What diffuses takes broken bonds out of its cells, and needs no more bonds for it.
+    // Diffusion takes broken bonds out of its cells, and needs no more bonds for it.
     const bool              follows = zone.follows_stretches() && body.deforms;
     const std::vector<bool> hanging = hanging_nodes(nodes);
     std::vector<bool>       candidates(nodes.n_local());

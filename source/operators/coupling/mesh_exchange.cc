@@ -420,7 +420,7 @@ namespace PeriDeal
   template <int dim, typename Law>
   void MeshExchange<dim, Law>::take_conductivities_at(const Vector &u)
   {
-    if constexpr (Law::has_form) // what conducts
+    if constexpr (Law::has_form) // diffusion
       {
         law.take_conductivities_at(u);
         typename CellStiffness<dim>::CornerValues temperatures;

@@ -329,7 +329,7 @@ namespace PeriDeal
       if (flags.local_element(i) > 0.5)
         kinds[i] = slave;
 
-    // Rows (slave, master, coefficient) of all slaves that hang on other slaves, known to
+    // Rows (slave, master, coefficient) of all slaves that depend on other slaves, known to
     // everybody.
     std::vector<std::array<double, 3>> rows;
     for (const Slave &entry : slaves)

@@ -22,7 +22,7 @@ namespace PeriDeal
     body.coupling.refuse(
       body.coupling.is_adaptive(),
       "Zone",
-      "'adaptive' is for what diffuses; with 'Physics = elasticity' use 'cracks: 1' or a formula.");
+      "'adaptive' is for diffusion; with 'Physics = elasticity' use 'cracks: 1' or a formula.");
     body.elasticity.refuse(
       body.elasticity.has_full_kinematics(),
       "Kinematics",

@@ -437,7 +437,7 @@ namespace PeriDeal
       !body.cracks.tips.empty(),
       "Surface correction",
       "does not follow cracks that grow ('Growth', 'Paths' in section 'Cracks') in a "
-      "body that deforms. Use 'none' or 'fictitious nodes'.");
+      "solid. Use 'none' or 'fictitious nodes'.");
   }
 
 

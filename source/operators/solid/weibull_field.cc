@@ -14,7 +14,7 @@ namespace PeriDeal
 
   namespace
   {
-    /** SplitMix64 (Steele, Lea and Flood 2014): each bit hangs on all bits of the state. */
+    /** SplitMix64 (Steele, Lea and Flood 2014): each bit depends on all bits of the state. */
     std::uint64_t mixed(std::uint64_t state)
     {
       state += 0x9e3779b97f4a7c15ull;

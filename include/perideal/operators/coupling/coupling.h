@@ -24,12 +24,12 @@ namespace PeriDeal
   /**
    * How peridynamic bonds in a zone and finite elements Q1 share one body: which bonds there are,
    * how strong they are, and what is left of each cell's matrix. Both act on the same nodes, the
-   * vertices of the mesh, with one unknown each where something diffuses, dim in a solid (rows and
-   * columns interleaved). The operators of the elements add up
+   * vertices of the mesh, with one unknown each in diffusion, dim in a solid (rows and columns
+   * interleaved). The operators of the elements add up
    *
    *   K u = sum of bonds W_ij v (v . (u_i - u_j)) + sum of families K_f u + sum of cells R_c u,
    *
-   * v = 1 for what diffuses, the bond's vector xi in a solid. Where a dilatation joins all bonds of
+   * v = 1 for diffusion, the bond's vector xi in a solid. Where a dilatation joins all bonds of
    * a node, they are a family (NodeFamilies).
    *
    * Every process asks for the bonds of its own nodes and for its own cells only. Not collective
@@ -133,8 +133,8 @@ namespace PeriDeal
 
     /**
      * Move on to the cracks after a change, and the zone with them. A bond's strength follows from
-     * the cracks as they are then, their whole way included: bonds that join find themselves broken
-     * where a crack has passed before. Collective.
+     * the cracks as they are then, their whole path included: bonds that join find themselves
+     * broken where a crack has passed before. Collective.
      */
     virtual void apply_change(const ChangeSet<dim> &change) = 0;
 
@@ -171,7 +171,7 @@ namespace PeriDeal
   void throw_if_zone_empty(const double n_nodes, const MPI_Comm communicator);
 
 
-  /** The coupling of what diffuses. Adds the halo to the nodes. Collective. Throws UserError. */
+  /** The coupling of diffusion. Adds the halo to the nodes. Collective. Throws UserError. */
   template <int dim>
   std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim>                &nodes,
                                                const BodyParameters<dim> &body,

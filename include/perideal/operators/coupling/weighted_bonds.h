@@ -9,7 +9,7 @@
 
 namespace PeriDeal
 {
-  /** Splice and blending of what diffuses: bonds that conduct, weighted. */
+  /** Splice and blending of diffusion: bonds that conduct, weighted. */
   template <int dim>
   class WeightedBonds : public WeightedCoupling<dim>
   {

@@ -14,16 +14,16 @@
 namespace PeriDeal
 {
   /**
-   * What splice and blending share, whatever diffuses or deforms: each node has a weight beta_i of
+   * What splice and blending share in diffusion and elasticity: each node has a weight beta_i of
    * peridynamics, 1 in the zone, falling linearly to 0 over the overlap outside of it. Nodes with
    * beta > 0 have whole families, cut off at the surface of the body.
    *
    * Energy blending (as the Arlequin method and its kin) weighs both energies: families by beta,
    * cells by 1 - beta (mean of the vertices). K is symmetric and positive semidefinite, but linear
    * fields are not exact where beta changes. Splice weighs rows: those of peridynamics by beta, of
-   * finite elements by 1 - beta. Linear fields are exact where families are whole (for what
-   * diffuses quadratic ones, too), but K is not symmetric, and heat is not conserved, forces do not
-   * balance, where beta changes.
+   * finite elements by 1 - beta. Linear fields are exact where families are whole (for diffusion
+   * quadratic ones, too), but K is not symmetric, and heat is not conserved, forces do not balance,
+   * where beta changes.
    */
   template <int dim>
   class WeightedCoupling : public Coupling<dim>

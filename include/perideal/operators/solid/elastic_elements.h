@@ -174,7 +174,7 @@ namespace PeriDeal
       return parted.empty() ? cut_by_cracks.flags() : parted;
     }
 
-    /** Nodes join that will do so on the whole way of the cracks; K stays as it is. Collective. */
+    /** Nodes join that will do so on the whole path of the cracks; K stays as it is. Collective. */
     void join_whole_way()
     {
       zone_bonds->join(body.cracks.end_time);

@@ -20,7 +20,7 @@ namespace PeriDeal
    *   energy k (d - r)^2/2 where r < d,   d = min(0.9 |xi|, 1.35 h),
    *
    * k the smaller one of both nodes' stiffnesses, h the mean of both. Forces are central: momentum
-   * and angular momentum are kept.
+   * and angular momentum are conserved.
    *
    * Asked are nodes at the body's boundary and those that have lost a bond. Of two nodes that have
    * all of their bonds no pair is taken that have a neighbour in common, in the undeformed body: a

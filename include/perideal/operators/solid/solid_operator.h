@@ -139,7 +139,7 @@ namespace PeriDeal
       this->multiply(y, u);
     }
 
-    /** Let parts of the body touch each other, with the thermal strains of now. Collective. */
+    /** Let parts of the body touch each other, with the current thermal strains. Collective. */
     void set_contact(std::unique_ptr<SolidContact> new_contact);
 
     /** Cracks or bonds that break may part the body. Not collective. */
