@@ -11,6 +11,75 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
+  FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
+                                        const std::array<BeyondSide, 2 * dim> &beyond,
+                                        const bool                             completes,
+                                        const bool                             may_pack)
+    : families(families)
+    , fictitious(families.nodes())
+  {
+    take(FictitiousBondSearch<dim>(families, fictitious).on_lattice(beyond, completes), may_pack);
+  }
+
+
+  template <int dim>
+  FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
+                                        const std::vector<BoundaryImage<dim>> &beyond)
+    : families(families)
+    , fictitious(families.nodes())
+  {
+    take(FictitiousBondSearch<dim>(families, fictitious).on_mesh(beyond), false);
+  }
+
+
+  template <int dim>
+  void FictitiousBonds<dim>::take(FictitiousBondList<dim> &&found, const bool may_pack)
+  {
+    list          = std::move(found.nodes);
+    starts        = std::move(found.starts);
+    image_of_bond = std::move(found.images);
+    moments       = std::move(found.moments);
+    springs       = std::move(found.squares);
+    list.shrink_to_fit();
+    starts.shrink_to_fit();
+    image_of_bond.shrink_to_fit();
+    moments.shrink_to_fit();
+    springs.shrink_to_fit();
+    if (!found.cut.empty())
+      state.resize(image_of_bond.size());
+    for (const std::size_t number : found.cut)
+      state.mark(number, BondState::parted, 0.);
+    const auto is_gone = [](const unsigned int unit) {
+      return unit == FictitiousBondList<dim>::gone;
+    };
+    packs = may_pack && found.units.size() < BondCode::gone;
+    if (packs)
+      {
+        codes.reserve(found.unit_of.size());
+        for (const unsigned int unit : found.unit_of)
+          codes.push_back(is_gone(unit) ? BondCode::gone : static_cast<BondCode::Code>(unit));
+        units = std::move(found.units);
+      }
+    else if (!found.units.empty())
+      {
+        moments.reserve(found.unit_of.size());
+        springs.reserve(found.unit_of.size());
+        for (std::size_t place = 0; place < list.size(); ++place)
+          for (std::size_t k = starts[place]; k < starts[place + 1]; ++k)
+            {
+              const bool           none = is_gone(found.unit_of[k]);
+              const UnitBond<dim> &unit = found.units[none ? 0 : found.unit_of[k]];
+              const double         w =
+                none ? 0. :
+                               families.nodes().volume(list[place]) * fictitious[image_of_bond[k]].volume;
+              moments.push_back(w * unit.moment);
+              springs.push_back(w * unit.weight);
+            }
+      }
+  }
+
+
+  template <int dim>
   Tensor<1, dim> FictitiousBonds<dim>::change(const Bond &bond, const double *u) const
   {
     Tensor<1, dim> eta;

@@ -4,58 +4,14 @@
 // What the bonds beyond the sides bear: which of them cracks cut, springs, thermal strains.
 
 #include <perideal/operators/solid/fictitious_bonds.h>
+#include <perideal/operators/solid/fictitious_cuts.h>
 
 #include <cmath>
-#include <functional>
 #include <vector>
 
 namespace PeriDeal
 {
   using namespace dealii;
-
-  template <int dim>
-  bool FictitiousBonds<dim>::is_separated(const unsigned int i,
-                                          const Term        &term,
-                                          const Point<dim>  &twice_planes) const
-  {
-    // Instead of the cracks mirror the bond, about each set of planes of symmetry that it passes.
-    const Nodes<dim> &nodes = families.nodes();
-    for (unsigned int image = 0; image < (1u << dim); ++image)
-      {
-        if ((image & ~term.mirrored) != 0)
-          continue;
-        Point<dim> a = nodes.crack_point(i), b = nodes.crack_point(term.node);
-        for (unsigned int d = 0; d < dim; ++d)
-          if ((image >> d) & 1)
-            a[d] = twice_planes[d] - a[d];
-          else if ((term.mirrored >> d) & 1)
-            b[d] = twice_planes[d] - b[d];
-        if (families.cracks().separate(a, b))
-          return true;
-      }
-    return false;
-  }
-
-
-  template <int dim>
-  bool FictitiousBonds<dim>::is_cut(
-    const unsigned int                             i,
-    const std::vector<Term>                       &of_image,
-    const std::function<Point<dim>(const Term &)> &twice_planes) const
-  {
-    for (const Term &term : of_image)
-      {
-        bool cut = false;
-        if (term.mirrored != 0 || !families.nodes().lattice())
-          cut = is_separated(i, term, twice_planes(term)); // beyond the reach, too
-        else if (term.node != i)
-          cut = families.cracks().cuts(i, term.node);
-        if (cut)
-          return true;
-      }
-    return false;
-  }
-
 
   template <int dim>
   void FictitiousBonds<dim>::part(const unsigned int node, const double t)
@@ -66,7 +22,7 @@ namespace PeriDeal
         return;
       terms.clear();
       fictitious.for_each_term(bond.image, [&](const Term &term) { terms.push_back(term); });
-      const bool cut = is_cut(node, terms, [&](const Term &term) {
+      const bool cut = is_cut<dim>(families, node, terms, [&](const Term &term) {
         if (!families.nodes().lattice())
           return fictitious.twice_planes(bond.image);
         return Point<dim>(fictitious[bond.image].place +
@@ -169,13 +125,6 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                 \
-  template bool FictitiousBonds<dim>::is_separated(const unsigned int,                            \
-                                                   const Term &,                                  \
-                                                   const Point<dim> &) const;                     \
-  template bool FictitiousBonds<dim>::is_cut(const unsigned int,                                  \
-                                             const std::vector<Term> &,                           \
-                                             const std::function<Point<dim>(const Term &)> &)     \
-    const;                                                                                        \
   template void   FictitiousBonds<dim>::part(const unsigned int, const double);                   \
   template bool   FictitiousBonds<dim>::is_parted(const unsigned int) const;                      \
   template double FictitiousBonds<dim>::weight_left(const unsigned int) const;                    \

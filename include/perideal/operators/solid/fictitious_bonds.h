@@ -5,21 +5,17 @@
 
 #include <perideal/bonds/bond_state.h>
 #include <perideal/operators/solid/bond_strengths.h>
+#include <perideal/operators/solid/fictitious_bond_search.h>
 #include <perideal/operators/solid/fictitious_images.h>
 #include <perideal/operators/solid/solid_rows.h>
 #include <perideal/operators/solid/thermal_strains.h>
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 #include <vector>
 
 namespace PeriDeal
 {
-  template <int dim>
-  class PointBins;
-
-
   /** Numbers of bonds, ascending, and how far each is stretched over the critical stretch. */
   using Overstretched = std::vector<std::pair<std::size_t, double>>;
 
@@ -235,40 +231,9 @@ namespace PeriDeal
 
     Bond bond_at(const std::size_t number, const unsigned int node) const;
 
-    using Site  = typename FictitiousExtension<dim>::Site;
-    using Index = typename FictitiousExtension<dim>::Index;
-    using Term  = typename Site::Term;
+    using Term = typename FictitiousImages<dim>::Term;
 
-    struct Search; // while bonds are found
-
-    void find_bonds_of(const unsigned int i, Search &search);
-    void find_site(const unsigned int i, unsigned int member, bool near_void, Search &) const;
-    void find_bonds_of(const unsigned int                     i,
-                       const std::vector<BoundaryImage<dim>> &beyond,
-                       const PointBins<dim>                  &bins,
-                       std::vector<unsigned int>             &number_of,
-                       Search                                &search);
-    template <typename Find>
-    void         find_bonds(Search &search, const Find &find);
-    void         pack(Search &search);
-    void         add_bond(const unsigned int            image,
-                          const dealii::Tensor<1, dim> &xi,
-                          const double                  weight,
-                          const bool                    cut,
-                          Search                       &search);
-    void         add_lattice_bond(const unsigned int, unsigned int, double, bool cut, Search &);
-    void         add_bond_beyond(const unsigned int i, unsigned int, double more, Search &);
-    unsigned int image_of(const unsigned int node, Search &search); // that is the node itself
-    unsigned int image_at(const Index &index,
-                          const Site  &site,
-                          const double volume,
-                          Search      &search);
-    bool         is_cut(const unsigned int                                     i,
-                        const std::vector<Term>                               &of_image,
-                        const std::function<dealii::Point<dim>(const Term &)> &twice_planes) const;
-    bool         is_separated(const unsigned int        i,
-                              const Term               &term,
-                              const dealii::Point<dim> &twice_planes) const;
+    void take(FictitiousBondList<dim> &&found, const bool may_pack);
 
     /** Y, with full kinematics W x Y/|Y|, else the moment. */
     dealii::Tensor<1, dim> direction(const Bond &bond, const double *u) const;

@@ -147,8 +147,8 @@ namespace PeriDeal
     std::vector<dealii::Point<dim>> planes_of_mesh;
     std::vector<std::size_t>        starts{0};
     std::vector<Term>               terms;
-    std::vector<unsigned int>       pulled; // the nodes of all terms, in ascending order
-    std::vector<unsigned int>       places; // of each term's node in these
+    std::vector<unsigned int>       pulled;   // the nodes of all terms, in ascending order
+    std::vector<unsigned int>       places;   // of each term's node in these
     std::vector<bool>               followed; // by owned node; empty: none
     mutable std::vector<double>     values, forces, sums; // sums: of the pulled nodes
     std::vector<double>             kept_forces;

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/bonds/point_bins.h>
+#include <perideal/mesh/lattice_sites.h>
+#include <perideal/operators/solid/fictitious_bond_search.h>
+#include <perideal/operators/solid/fictitious_cuts.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  FictitiousBondSearch<dim>::FictitiousBondSearch(const Families<dim>   &families,
+                                                  FictitiousImages<dim> &images)
+    : families(families)
+    , images(images)
+  {}
+
+
+  template <int dim>
+  FictitiousBondList<dim> FictitiousBondSearch<dim>::on_lattice(
+    const std::array<BeyondSide, 2 * dim> &beyond,
+    const bool                             completes)
+  {
+    const Nodes<dim>   &nodes   = families.nodes();
+    const Lattice<dim> &lattice = *nodes.lattice();
+    extension.emplace(families, beyond);
+    list.units        = unit_bonds(families);
+    int         reach = 0;
+    std::size_t sites = 1;
+    for (const FamilyMember<dim> &member : families.weights().members())
+      for (unsigned int d = 0; d < dim; ++d)
+        reach = std::max(reach, member.offset[d]);
+    for (unsigned int d = 0; d < dim; ++d)
+      sites *= lattice.n_sites[d];
+    if (completes)
+      completion.emplace(families.weights(), lattice);
+    const bool all = completes && nodes.n_global() < sites;
+    return find_all([&](const unsigned int i) {
+      const auto index = lattice.index(nodes.position(i));
+      bool       near  = all || extension->distance(index) <= reach;
+      for (unsigned int d = 0; d < dim && completes; ++d)
+        near = near || std::min(index[d], lattice.n_sites[d] - 1 - index[d]) <= reach;
+      if (near)
+        find_on_lattice(i);
+    });
+  }
+
+
+  template <int dim>
+  FictitiousBondList<dim> FictitiousBondSearch<dim>::on_mesh(
+    const std::vector<BoundaryImage<dim>> &beyond)
+  {
+    PointBins<dim> bins(families.weights().reach());
+    for (unsigned int g = 0; g < beyond.size(); ++g)
+      bins.add(beyond[g].place, g);
+    std::vector<unsigned int> number_of(beyond.size(), numbers::invalid_unsigned_int);
+    return find_all([&](const unsigned int i) { find_on_mesh(i, beyond, bins, number_of); });
+  }
+
+
+  template <int dim>
+  template <typename Find>
+  FictitiousBondList<dim> FictitiousBondSearch<dim>::find_all(const Find &find)
+  {
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      {
+        find(i);
+        if (list.images.size() == list.starts.back())
+          continue;
+        list.nodes.push_back(i);
+        list.starts.push_back(list.images.size());
+      }
+    images.make_room();
+    return std::move(list);
+  }
+
+
+  template <int dim>
+  void FictitiousBondSearch<dim>::add(const unsigned int image,
+                                      const unsigned int member,
+                                      const double       factor,
+                                      const bool         cut)
+  {
+    if (cut)
+      list.cut.push_back(list.images.size());
+    list.images.push_back(image);
+    unsigned int unit = cut ? FictitiousBondList<dim>::gone : member;
+    if (!cut && factor != 1.)
+      {
+        const auto [entry, is_new] = unit_with.try_emplace({member, factor}, list.units.size());
+        unit                       = entry->second;
+        if (is_new)
+          {
+            UnitBond<dim> more = list.units[member];
+            more.moment *= factor;
+            more.weight *= factor;
+            list.units.push_back(more);
+          }
+      }
+    list.unit_of.push_back(unit);
+  }
+
+
+  template <int dim>
+  void FictitiousBondSearch<dim>::find_on_mesh(const unsigned int                     i,
+                                               const std::vector<BoundaryImage<dim>> &beyond,
+                                               const PointBins<dim>                  &bins,
+                                               std::vector<unsigned int>             &number_of)
+  {
+    const Nodes<dim> &nodes    = families.nodes();
+    const Point<dim> &center   = nodes.position(i);
+    const double      farthest = halo_of_images(families.weights().reach());
+    std::vector<std::pair<Tensor<1, dim>, unsigned int>> around;
+    bins.visit_near(center, [&](const unsigned int g) {
+      const Tensor<1, dim> xi = beyond[g].place - center;
+      if (xi.norm() > 1e-9 * families.weights().reach() &&
+          families.weights().of_length(xi.norm()) > 0. &&
+          std::all_of(beyond[g].term_places.begin(),
+                      beyond[g].term_places.end(),
+                      [&](const Point<dim> &p) { return center.distance(p) < farthest; }))
+        around.emplace_back(xi, g);
+    });
+    // In the order of the relative position; images at one place come in the order in which they
+    // were found.
+    std::sort(around.begin(), around.end(), [](const auto &a, const auto &b) {
+      for (unsigned int d = dim; d-- > 0;)
+        if (a.first[d] != b.first[d])
+          return a.first[d] < b.first[d];
+      return a.second < b.second;
+    });
+    for (const auto &[xi, g] : around)
+      {
+        const BoundaryImage<dim> &image = beyond[g];
+        if (families.cracks().leaves_body(i, image.origin))
+          continue;
+        // As on a lattice.
+        const bool cut =
+          !families.cracks().empty() &&
+          is_cut<dim>(families, i, image.terms, [&](const Term &) { return image.twice_planes; });
+        if (cut && !(image.terms.size() == 1 &&
+                     is_separated(families, i, image.terms[0], image.twice_planes)))
+          continue;
+        if (number_of[g] == numbers::invalid_unsigned_int)
+          {
+            typename FictitiousImages<dim>::Image fields{};
+            fields.place  = image.place;
+            fields.planes = image.planes;
+            fields.volume = image.volume;
+            fields.origin = image.origin;
+            number_of[g]  = images.add(fields, image.terms, &image.twice_planes);
+          }
+        const double w =
+          cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm());
+        if (cut)
+          list.cut.push_back(list.images.size());
+        list.images.push_back(number_of[g]);
+        list.moments.push_back(w * xi);
+        list.squares.push_back(w * xi.norm_square());
+      }
+  }
+
+
+  template <int dim>
+  void FictitiousBondSearch<dim>::find_site(const unsigned int i, const unsigned int member)
+  {
+    const Nodes<dim>   &nodes   = families.nodes();
+    const Lattice<dim> &lattice = *nodes.lattice();
+    const Index         index =
+      lattice.index(nodes.position(i)) + families.weights().members()[member].offset;
+    const unsigned int real   = families.neighbors().node_at(index);
+    Member            &result = family[member];
+    result                    = {real, 0., 0.};
+    if (real != numbers::invalid_unsigned_int)
+      result.inside = nodes.volume(real);
+    if (!extension->is_inside(index) && extension->find(index, site))
+      result.beyond = site.volume - result.inside;
+    if (result.beyond <= 1e-9 * site.volume ||
+        (families.near_crack(i) && families.cracks().leaves_body(i, index)))
+      result.beyond = 0.;
+  }
+
+
+  template <int dim>
+  const std::vector<double> *FictitiousBondSearch<dim>::completing_factors(const unsigned int i)
+  {
+    if (!completion)
+      return nullptr;
+    const double whole       = families.nodes().lattice()->cell_volume();
+    bool         any_missing = false;
+    volumes.resize(family.size());
+    for (unsigned int m = 0; m < family.size(); ++m)
+      {
+        double volume = family[m].inside + family[m].beyond;
+        if (std::abs(volume - whole) < 1e-9 * whole)
+          volume = whole;
+        any_missing = any_missing || volume < whole;
+        volumes[m]  = volume;
+      }
+    if (!any_missing)
+      return nullptr;
+    for (unsigned int m = 0; m < family.size() && families.near_crack(i); ++m)
+      if (family[m].inside > 0. && families.cracks().leaves_body(i, family[m].node))
+        volumes[m] = family[m].beyond;
+    return &completion->factors(volumes);
+  }
+
+
+  template <int dim>
+  void FictitiousBondSearch<dim>::find_on_lattice(const unsigned int i)
+  {
+    family.resize(families.weights().members().size());
+    for (unsigned int m = 0; m < family.size(); ++m)
+      find_site(i, m);
+    const std::vector<double> *const factors = completing_factors(i);
+    for (unsigned int m = 0; m < family.size(); ++m)
+      {
+        const Member member = family[m];
+        const double more   = factors != nullptr ? (*factors)[m] : 0.;
+        if (member.beyond > 0.)
+          add_beyond(i, m, more);
+        if (more > 0. && member.inside > 0. && volumes[m] > 0. &&
+            !(families.near_crack(i) && families.cracks().cuts(i, member.node)))
+          add(image_of(member.node), m, more, false);
+      }
+  }
+
+
+  template <int dim>
+  void FictitiousBondSearch<dim>::add_beyond(const unsigned int i,
+                                             const unsigned int member,
+                                             const double       more)
+  {
+    const Nodes<dim>   &nodes   = families.nodes();
+    const Lattice<dim> &lattice = *nodes.lattice();
+    const Index         index =
+      lattice.index(nodes.position(i)) + families.weights().members()[member].offset;
+    extension->find(index, site);
+    // What a crack cuts of a mirror image counts in the damage.
+    const auto twice_planes = [&](const Term &term) {
+      return Point<dim>(lattice.position(index) + (nodes.position(term.node) - Point<dim>()));
+    };
+    const bool alone = site.terms.size() == 1; // then it breaks by itself
+    const bool cut   = families.near_crack(i) && is_cut<dim>(families, i, site.terms, twice_planes);
+    if (cut && !(alone && is_separated(families, i, site.terms[0], twice_planes(site.terms[0]))))
+      return;
+    const unsigned int image = image_at(index, family[member].beyond);
+    // What completes the family is apart from a bond that breaks, as in the body.
+    add(image, member, alone ? 1. : 1. + more, cut);
+    if (!alone || more <= 0. || cut)
+      return;
+    const auto [entry, is_new] = beside.try_emplace(image, images.size());
+    if (is_new)
+      {
+        auto fields    = images[image];
+        fields.is_real = true;
+        images.add(fields, site.terms);
+      }
+    add(entry->second, member, more, false);
+  }
+
+
+  template <int dim>
+  unsigned int FictitiousBondSearch<dim>::image_of(const unsigned int node)
+  {
+    const auto [entry, is_new] = of_node.try_emplace(node, images.size());
+    if (!is_new)
+      return entry->second;
+    const Nodes<dim>                     &nodes = families.nodes();
+    typename FictitiousImages<dim>::Image fields{};
+    fields.planes.fill(numbers::invalid_boundary_id);
+    fields.place   = nodes.position(node);
+    fields.volume  = nodes.volume(node);
+    fields.origin  = node;
+    fields.site    = nodes.lattice()->index(fields.place);
+    fields.is_real = true;
+    return images.add(fields, {Term{node, 0, 1.}});
+  }
+
+
+  template <int dim>
+  unsigned int FictitiousBondSearch<dim>::image_at(const Index &index, const double volume)
+  {
+    const Lattice<dim> &lattice = *families.nodes().lattice();
+    std::size_t         key     = 0;
+    for (unsigned int d = dim; d-- > 0;)
+      {
+        const std::size_t wide = 4 * static_cast<std::size_t>(lattice.n_sites[d]) + 4096;
+        key                    = key * wide + (index[d] + wide / 2);
+      }
+    const auto [entry, is_new] = at_site.try_emplace(key, images.size());
+    if (!is_new)
+      return entry->second;
+    typename FictitiousImages<dim>::Image fields{};
+    for (unsigned int d = 0; d < dim; ++d)
+      fields.planes[d] = 2 * d + (2 * index[d] >= lattice.n_sites[d] - 1 ? 1 : 0);
+    fields.place  = lattice.position(index);
+    fields.volume = volume;
+    fields.origin = site.origin;
+    fields.site   = index;
+    return images.add(fields, site.terms);
+  }
+
+
+  template class FictitiousBondSearch<1>;
+  template class FictitiousBondSearch<2>;
+  template class FictitiousBondSearch<3>;
+} // namespace PeriDeal
