@@ -200,7 +200,7 @@ def branching(lattice, steps):
 
 
 def motion():
-    branching({"Domain/Cells": "100, 40"}, ("1.8e-7", "0.9e-7"))
+    branching({"Domain/Cells": "100, 40"}, ("1.2e-7", "0.6e-7"))
     table = Comparison("Branching crack, newmark")
     # Faces that begin to touch conserve energy to order dt^2 alone.
     newmark = run_scene("prm/fracture/branching_crack.prm", {"Domain/Cells": "50, 20", "Time/Stepper": "newmark", "Time/Time step": "4e-7",
@@ -212,7 +212,7 @@ def motion():
 
 
 def fine_motion():
-    branching({}, ("0.9e-7", "0.45e-7"))
+    branching({}, ("0.6e-7", "0.3e-7"))
 
 
 COARSE = {**QUIET, "Domain/Cells": "24, 48", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-12", "Time/Time step": "0.05",
