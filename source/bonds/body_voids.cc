@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/mpi.h>
-
 #include <perideal/bonds/body_voids.h>
-#include <perideal/bonds/point_bins.h>
+#include <perideal/bonds/boundary_facets.h>
 #include <perideal/mesh/mesh_builder.h>
 
 #include <algorithm>
@@ -264,14 +262,10 @@ namespace PeriDeal
         , tiny(1e-7 * nodes.smallest_spacing())
         , bins(reach)
       {
-        gather();
-        double size = 0.;
-        for (const Facet &facet : facets)
-          for (const Point<dim> &corner : facet.corners)
-            size = std::max(size, corner.distance(facet.corners[0]));
-        bins = PointBins<dim>(reach + size);
-        for (unsigned int f = 0; f < facets.size(); ++f)
-          bins.add(facets[f].corners[0], f);
+        for (const Facet &facet : gather_boundary_facets(nodes))
+          if (facet.side != crack_boundary_id)
+            facets.push_back(facet);
+        bins = bins_of_facets<dim>(facets, reach);
         for (unsigned int i = 0; i < nodes.n_local(); ++i)
           close.push_back(has_facet_ahead(i));
       }
@@ -294,78 +288,11 @@ namespace PeriDeal
       }
 
     private:
-      struct Facet
-      {
-        std::array<Point<dim>, dim> corners;
-        Tensor<1, dim>              normal; // outwards
+      using Facet = BoundaryFacet<dim>;
 
-        double height(const Point<dim> &p) const
-        {
-          return normal * (p - corners[0]);
-        }
-      };
-
-      static Tensor<1, dim> area_vector(const std::array<Point<dim>, dim> &corners)
+      static double height_above(const Facet &facet, const Point<dim> &p)
       {
-        Tensor<1, dim> normal;
-        if constexpr (dim == 2)
-          {
-            normal[0] = corners[1][1] - corners[0][1];
-            normal[1] = corners[0][0] - corners[1][0];
-          }
-        else if constexpr (dim == 3)
-          normal = cross_product_3d(corners[1] - corners[0], corners[2] - corners[0]);
-        return normal;
-      }
-
-      void gather()
-      {
-        std::vector<double> numbers;
-        for (const auto &cell : nodes.dof_handler().active_cell_iterators())
-          if (cell->is_locally_owned())
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != crack_boundary_id)
-                for (unsigned int piece = 0; piece < (dim == 3 ? 2 : 1); ++piece)
-                  add_facet(cell, f, piece, numbers);
-        for (const auto &list : Utilities::MPI::all_gather(nodes.communicator(), numbers))
-          for (std::size_t n = 0; n < list.size();)
-            {
-              Facet facet;
-              for (Point<dim> &corner : facet.corners)
-                for (unsigned int d = 0; d < dim; ++d)
-                  corner[d] = list[n++];
-              facet.normal = area_vector(facet.corners);
-              if (facet.normal.norm() > 0.)
-                {
-                  facet.normal /= facet.normal.norm();
-                  facets.push_back(facet);
-                }
-            }
-        // In an order that does not depend on who owns what.
-        std::sort(facets.begin(), facets.end(), [](const Facet &a, const Facet &b) {
-          for (unsigned int k = 0; k < dim; ++k)
-            for (unsigned int d = 0; d < dim; ++d)
-              if (a.corners[k][d] != b.corners[k][d])
-                return a.corners[k][d] < b.corners[k][d];
-          return false;
-        });
-      }
-
-      template <typename Cell>
-      void add_facet(const Cell          &cell,
-                     const unsigned int   f,
-                     const unsigned int   piece,
-                     std::vector<double> &numbers) const
-      {
-        static constexpr unsigned int halves[2][3] = {{0, 1, 2}, {1, 3, 2}};
-        std::array<Point<dim>, dim>   corners;
-        for (unsigned int k = 0; k < dim; ++k)
-          corners[k] = cell->face(f)->vertex(dim == 3 ? halves[piece][k] : k);
-        if (dim > 1 && area_vector(corners) * (cell->face(f)->center() - cell->center()) < 0.)
-          std::swap(corners[0], corners[dim - 1]);
-        for (const Point<dim> &corner : corners)
-          for (unsigned int d = 0; d < dim; ++d)
-            numbers.push_back(corner[d]);
+        return facet.normal * (p - facet.corners[0]);
       }
 
       /** Beyond whose plane a node of the body within the reach may lie. */
@@ -379,41 +306,9 @@ namespace PeriDeal
         return any;
       }
 
-      static double distance_to_segment(const Point<dim> &p,
-                                        const Point<dim> &a,
-                                        const Point<dim> &b)
+      static double distance_to(const Facet &facet, const Point<dim> &p)
       {
-        const double t = std::clamp(((p - a) * (b - a)) / (b - a).norm_square(), 0., 1.);
-        return p.distance(a + t * (b - a));
-      }
-
-      /** Whether a point of the plane of a facet lies on it; its rim belongs to it. */
-      bool covers(const Facet &facet, const Point<dim> &p) const
-      {
-        if constexpr (dim == 2)
-          return distance_to_segment(p, facet.corners[0], facet.corners[1]) < tiny;
-        else if constexpr (dim == 3)
-          for (unsigned int k = 0; k < 3; ++k)
-            {
-              const Point<3>    &a = facet.corners[k], &b = facet.corners[(k + 1) % 3];
-              const Tensor<1, 3> inwards = cross_product_3d(facet.normal, b - a);
-              if (inwards * (p - a) < -tiny * inwards.norm())
-                return false;
-            }
-        return true;
-      }
-
-      double distance_to(const Facet &facet, const Point<dim> &p) const
-      {
-        const double height = facet.height(p);
-        if (covers(facet, Point<dim>(p - height * facet.normal)))
-          return std::abs(height);
-        double smallest = p.distance(facet.corners[0]);
-        for (unsigned int k = 0; dim > 1 && k < dim; ++k)
-          smallest =
-            std::min(smallest,
-                     distance_to_segment(p, facet.corners[k], facet.corners[(k + 1) % dim]));
-        return smallest;
+        return facet.at(facet.nearest_weights(p)).distance(p);
       }
 
       /**
@@ -424,7 +319,7 @@ namespace PeriDeal
       {
         double smallest = std::numeric_limits<double>::max(), height = 0.;
         bins.visit_near(p, [&](const unsigned int f) {
-          const double distance = distance_to(facets[f], p), own = facets[f].height(p);
+          const double distance = distance_to(facets[f], p), own = height_above(facets[f], p);
           if (distance < smallest - tiny ||
               (distance < smallest + tiny && std::abs(own) > std::abs(height)))
             height = own;
@@ -438,11 +333,11 @@ namespace PeriDeal
         // Where the way meets the boundary; what lies between two such places is inside or not.
         std::vector<double> places;
         bins.visit_near(a, [&](const unsigned int f) {
-          const double from = facets[f].height(a), to = facets[f].height(b);
+          const double from = height_above(facets[f], a), to = height_above(facets[f], b);
           if ((from <= tiny && to <= tiny) || (from > tiny && to > tiny))
             return;
           const double s = std::clamp(from / (from - to), 0., 1.);
-          if (covers(facets[f], Point<dim>(a + s * (b - a))))
+          if (distance_to(facets[f], Point<dim>(a + s * (b - a))) < tiny) // its rim belongs to it
             places.push_back(s);
         });
         if (places.empty())
@@ -477,12 +372,14 @@ namespace PeriDeal
                                                   const BodyParameters<dim> &body,
                                                   const KernelWeights<dim>  &weights)
   {
-    if (dim == 1 || body.peridynamics.across_voids == BondsAcrossVoids::keep)
-      return {};
-    if (!nodes.lattice())
-      return std::make_unique<BoundaryFaces<dim>>(nodes, weights.reach());
-    if (body.domain.has_voids())
-      return std::make_unique<MissingCells<dim>>(nodes, body.domain, weights);
+    if constexpr (dim > 1)
+      if (body.peridynamics.across_voids != BondsAcrossVoids::keep)
+        {
+          if (!nodes.lattice())
+            return std::make_unique<BoundaryFaces<dim>>(nodes, weights.reach());
+          if (body.domain.has_voids())
+            return std::make_unique<MissingCells<dim>>(nodes, body.domain, weights);
+        }
     return {};
   }
 

@@ -19,11 +19,6 @@ namespace PeriDeal
     constexpr double alike = 0.8; // cosine of the angle between normals of one side
 
     /** The normal of a segment or triangle, as long as this is large. */
-    Tensor<1, 1> area_vector(const std::array<Point<1>, 1> &)
-    {
-      return Point<1>(1.);
-    }
-
     Tensor<1, 2> area_vector(const std::array<Point<2>, 2> &corners)
     {
       const Tensor<1, 2> along = corners[1] - corners[0];
@@ -36,25 +31,22 @@ namespace PeriDeal
     }
 
 
-    /** Weights of the corners in the point of a segment or triangle that is nearest to p. */
-    std::array<double, 1> nearest_weights(const Point<1> &, const std::array<Point<1>, 1> &)
-    {
-      return {1.};
-    }
-
     template <int dim>
     double part_along(const Point<dim> &p, const Point<dim> &a, const Point<dim> &b)
     {
       return std::clamp(((p - a) * (b - a)) / (b - a).norm_square(), 0., 1.);
     }
 
-    std::array<double, 2> nearest_weights(const Point<2> &p, const std::array<Point<2>, 2> &corners)
+    /** Weights of the corners in the point of a segment or triangle that is nearest to p. */
+    std::array<double, 2> weights_of_nearest(const Point<2>                &p,
+                                             const std::array<Point<2>, 2> &corners)
     {
       const double t = part_along(p, corners[0], corners[1]);
       return {1. - t, t};
     }
 
-    std::array<double, 3> nearest_weights(const Point<3> &p, const std::array<Point<3>, 3> &corners)
+    std::array<double, 3> weights_of_nearest(const Point<3>                &p,
+                                             const std::array<Point<3>, 3> &corners)
     {
       const Tensor<1, 3>    normal = area_vector(corners);
       const double          square = 2. * normal.norm_square();
@@ -94,7 +86,7 @@ namespace PeriDeal
         std::vector<std::array<unsigned int, dim>> list;
         if constexpr (dim == 2)
           list = {{0, 1}};
-        else if constexpr (dim == 3)
+        else
           list = {{0, 1, 2}, {1, 3, 2}};
         return list;
       }();
@@ -104,29 +96,25 @@ namespace PeriDeal
 
 
   template <int dim>
-  BoundaryFacets<dim>::BoundaryFacets(const Nodes<dim>                                    &nodes,
-                                      const std::vector<types::boundary_id>               &symmetry,
-                                      const std::function<bool(const types::boundary_id)> &goes_on,
-                                      const double                                         reach)
-    : reach(reach)
-    , bins(reach)
+  std::array<double, dim> BoundaryFacet<dim>::nearest_weights(const Point<dim> &p) const
   {
-    gather(nodes, goes_on);
-    take_out_planes(symmetry);
-    for (const Facet &facet : facets)
-      for (const Point<dim> &corner : facet.corners)
-        size = std::max(size, corner.distance(facet.corners[0]));
-    bins = PointBins<dim>(reach + size);
-    for (unsigned int f = 0; f < facets.size(); ++f)
-      bins.add(facets[f].corners[0], f);
-    find_corner_normals();
+    return weights_of_nearest(p, corners);
+  }
+
+  template <int dim>
+  Point<dim> BoundaryFacet<dim>::at(const std::array<double, dim> &weights) const
+  {
+    Point<dim> point;
+    for (unsigned int k = 0; k < dim; ++k)
+      point += weights[k] * corners[k];
+    return point;
   }
 
 
   template <int dim>
-  void BoundaryFacets<dim>::gather(const Nodes<dim>                                    &nodes,
-                                   const std::function<bool(const types::boundary_id)> &goes_on)
+  std::vector<BoundaryFacet<dim>> gather_boundary_facets(const Nodes<dim> &nodes)
   {
+    const bool          on_vertices = nodes.dof_handler().get_fe().n_dofs_per_vertex() > 0;
     std::vector<double> numbers; // global indices are exact up to 2^53
     for (const auto &cell : nodes.dof_handler().active_cell_iterators())
       if (cell->is_locally_owned())
@@ -146,17 +134,17 @@ namespace PeriDeal
                 numbers.push_back(face->boundary_id());
                 for (unsigned int k = 0; k < dim; ++k)
                   {
-                    numbers.push_back(face->vertex_dof_index(piece[k], 0));
+                    numbers.push_back(on_vertices ? face->vertex_dof_index(piece[k], 0) : 0);
                     for (unsigned int d = 0; d < dim; ++d)
                       numbers.push_back(corners[k][d]);
                   }
               }
+    std::vector<BoundaryFacet<dim>> facets;
     for (const auto &list : Utilities::MPI::all_gather(nodes.communicator(), numbers))
       for (std::size_t n = 0; n < list.size();)
         {
-          Facet facet;
-          facet.side    = static_cast<types::boundary_id>(list[n++]);
-          facet.goes_on = goes_on(facet.side);
+          BoundaryFacet<dim> facet;
+          facet.side = static_cast<types::boundary_id>(list[n++]);
           for (unsigned int k = 0; k < dim; ++k)
             {
               facet.nodes[k] = static_cast<types::global_dof_index>(list[n++]);
@@ -171,14 +159,30 @@ namespace PeriDeal
               facets.push_back(facet);
             }
         }
-    // In an order that does not depend on who owns what.
-    std::sort(facets.begin(), facets.end(), [](const Facet &a, const Facet &b) {
+    std::sort(facets.begin(), facets.end(), [](const auto &a, const auto &b) {
       for (unsigned int k = 0; k < dim; ++k)
         for (unsigned int d = 0; d < dim; ++d)
           if (a.corners[k][d] != b.corners[k][d])
             return a.corners[k][d] < b.corners[k][d];
       return false;
     });
+    return facets;
+  }
+
+
+  template <int dim>
+  BoundaryFacets<dim>::BoundaryFacets(const Nodes<dim>                                    &nodes,
+                                      const std::vector<types::boundary_id>               &symmetry,
+                                      const std::function<bool(const types::boundary_id)> &goes_on,
+                                      const double                                         reach)
+    : reach(reach)
+    , bins(reach)
+  {
+    for (const BoundaryFacet<dim> &facet : gather_boundary_facets(nodes))
+      facets.push_back({facet, goes_on(facet.side), {}});
+    take_out_planes(symmetry);
+    bins = bins_of_facets<dim>(facets, reach);
+    find_corner_normals();
   }
 
 
@@ -274,10 +278,9 @@ namespace PeriDeal
                                                                   const unsigned int facet) const
   {
     Foot foot;
-    foot.facet   = facet;
-    foot.weights = nearest_weights(p, facets[facet].corners);
-    for (unsigned int k = 0; k < dim; ++k)
-      foot.point += foot.weights[k] * facets[facet].corners[k];
+    foot.facet    = facet;
+    foot.weights  = facets[facet].nearest_weights(p);
+    foot.point    = facets[facet].at(foot.weights);
     foot.distance = foot.point.distance(p);
     return foot;
   }
@@ -404,7 +407,11 @@ namespace PeriDeal
   }
 
 
-  template class BoundaryFacets<1>;
-  template class BoundaryFacets<2>;
-  template class BoundaryFacets<3>;
+#define PERIDEAL_INSTANTIATE(dim)                                                           \
+  template struct BoundaryFacet<dim>;                                                       \
+  template std::vector<BoundaryFacet<dim>> gather_boundary_facets<dim>(const Nodes<dim> &); \
+  template class BoundaryFacets<dim>;
+  PERIDEAL_INSTANTIATE(2)
+  PERIDEAL_INSTANTIATE(3)
+#undef PERIDEAL_INSTANTIATE
 } // namespace PeriDeal

@@ -7,12 +7,11 @@
 
 import math
 import os
-import sys
 
 import numpy as np
 
 from accuracy_cases import crack_cases, elastic_cases, moving_cases, nonlocal_cases, nonlocal_share, smooth_cases, transient_cases
-from scene_test import SOURCE_DIR, check, check_close, check_less, check_message, finish, print_table, run_scene
+from scene_test import SOURCE_DIR, check, check_close, check_less, check_message, print_table, run_parts, run_scene
 
 N_POINTS = 1000
 
@@ -283,7 +282,5 @@ def others():
     check_close(flow.model("auto")["boundary flux"]["right"], 2 + 1 / 3, relative=1e-3, what="what enters, changing with time")
 
 
-PARTS = {"fields": fields, "solids": solids, "changing": changing, "rough": rough, "rough_more": rough_more, "others": others}
-for part in sys.argv[1:] or PARTS:
-    PARTS[part]()
-finish()
+if __name__ == "__main__":
+    run_parts(fields, solids, changing, rough, rough_more, others)

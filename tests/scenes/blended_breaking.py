@@ -7,11 +7,9 @@
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
 """
 
-import sys
-
 from fracture import BROKEN, DISSIPATED, history
 from following_zone import path_apart, peak
-from scene_test import Comparison, check, check_less, check_message, finish, run_scene
+from scene_test import Comparison, check, check_less, check_message, run_parts, run_scene
 
 MODEL, PD = "coupled", "peridynamics"
 SCENE = "prm/fracture/blended_zone.prm"
@@ -126,12 +124,5 @@ def mistakes():
         check_message(run_scene(SCENE, {**COARSE, **settings}, expect_error=True), *words)
 
 
-def main():
-    parts = {function.__name__: function for function in (static, growing, cooled, motion, ranks, mistakes)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(static, growing, cooled, motion, ranks, mistakes)

@@ -8,9 +8,8 @@
 """
 
 import math
-import sys
 
-from scene_test import Comparison, finish, fitted_order, observed_orders, print_table, run_scene
+from scene_test import Comparison, fitted_order, observed_orders, print_table, run_parts, run_scene
 
 SCENE = "prm/papers/bobaru_2010/example_{}_paper.prm"
 RATIOS = (2, 4, 8, 16)
@@ -68,7 +67,7 @@ def as_published(kernel):
     return {"Peridynamics__Kernel": kernel, "Peridynamics__Volume_fraction": "linear" if kernel == "constant" else "none"}
 
 
-def rates(finenesses, middle_gap):
+def rates(finenesses=FINENESS[:2], middle_gap=2.6e-2):
     published = Comparison("Bobaru and Duangpanya 2010: 16 rates at t = 8 s, against the paper")
     middle = Comparison("Temperature of the middle at t = 8 s, extrapolated to horizon 0 from the two shortest, against the"
                         " classical one")
@@ -114,14 +113,7 @@ def flux():
                 ("kernel", "t = 0.1", "t = 4", "t = 8", "published"), rows)
 
 
-def main():
+if __name__ == "__main__":
     # What extrapolation leaves is of second order in the horizon; measured, at m = 16: at most
     # 2.1e-2 from the two longer horizons, 4.5e-3 from the two shorter ones.
-    parts = {"rates": lambda: rates(FINENESS[:2], 2.6e-2), "rates_fine": lambda: rates(FINENESS, 6.5e-3), "flux": flux}
-    for name in sys.argv[1:] or ("rates", "flux"):
-        parts[name]()
-    finish()
-
-
-if __name__ == "__main__":
-    main()
+    run_parts(rates, flux, rates_fine=lambda: rates(FINENESS, 6.5e-3))

@@ -9,9 +9,7 @@ Differences are those of equation 13, along all nodes of y = 0.5. Beside the pub
 independent program with the same settings (numpy, dense slaves, Chebyshev expansion of the exponential): 1e-6.
 """
 
-import sys
-
-from scene_test import Comparison, finish, fitted_order, print_table, relative_difference, run_scene
+from scene_test import Comparison, fitted_order, print_table, relative_difference, run_parts, run_scene
 
 PAPER = "prm/papers/bobaru_2012/example_{}_paper.prm"
 OURS = "prm/papers/bobaru_2012/example_{}.prm"
@@ -100,12 +98,5 @@ def rates():
     program.show()
 
 
-def main():
-    parts = {"table_1": table_1, "rates": rates}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(table_1, rates)

@@ -6,14 +6,12 @@
 """
 
 import math
-import sys
 
 from cracked_plate import HeatedPlate, Plate
-from scene_test import Comparison, check, check_close, finish, run_scene
+from scene_test import COUPLED, FE, PD, Comparison, check, check_close, run_parts, run_scene
 from scene_texts import PULLED_STRIP
 
 SCENE = "prm/elasticity/coupled_crack.prm"
-FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 BARE = {"Output/Fields": "none", "Output/Probes": "", "Reference/Solution": "", "Peridynamics/Kernel exponent": "auto"}
 CENTERS, VERTICES = "cell centers", "vertices"
 
@@ -116,5 +114,4 @@ def table():
 
 
 if __name__ == "__main__":
-    {"plates": plates, "heat": heat, "ranks": ranks, "table": table}[sys.argv[1]]()
-    finish()
+    run_parts(plates, heat, ranks, table=table)

@@ -8,14 +8,12 @@ Bounds that follow from no theory are at most 1.6 times the gap that was measure
 """
 
 import math
-import sys
 
 from fracture import history
-from scene_test import Comparison, check, check_less, check_message, finish, run_scene
+from scene_test import QUIET, Comparison, check, check_less, check_message, run_parts, run_scene
 
 PRESSED, PIECES, TORN = "prm/fracture/pressed_crack.prm", "prm/fracture/struck_pieces.prm", "prm/fracture/torn_and_pressed.prm"
 BARS = "prm/fracture/colliding_bars.prm"
-QUIET = {"Output/Fields": "none"}
 MODELS = ("peridynamics", "coupled")
 FLAT, OBLIQUE = "-0.3,0.01 ; 0.3,0.01", "-0.26,-0.15 ; 0.26,0.15"
 OPEN = {"Elasticity/Contact": "false"}
@@ -159,5 +157,5 @@ def mistakes():
         check_message(run_scene(PRESSED, {**asked, **settings}, expect_error=True), "'Contact' in section 'Elasticity'", *words)
 
 
-{"rest": rest, "torn": torn, "motion": motion, "bodies": bodies, "fragments": fragments, "ranks": ranks, "mistakes": mistakes}[sys.argv[1]]()
-finish()
+if __name__ == "__main__":
+    run_parts(rest, torn, motion, bodies, fragments, ranks, mistakes)

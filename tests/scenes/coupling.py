@@ -10,11 +10,9 @@ Bounds that follow from no theory are at most 1.5 times the error that was measu
 import math
 import pathlib
 import re
-import sys
 
-from scene_test import SOURCE_DIR, check, check_close, check_less, finish, print_table, run_scene
+from scene_test import COUPLED, FE, PD, SOURCE_DIR, check, check_close, check_less, print_table, run_parts, run_scene
 
-FEM, PD, BOTH = "finite elements", "peridynamics", "coupled"
 QUIET = {"Output/Fields": "none", "Solver/Tolerance": "1e-12"}
 ZONES = {"block": "0.3 - max(abs(x - 0.5), abs(y - 0.5))", "half": "0.5 - x", "scattered": "sin(4375.85*x + 1234.5*y + 77*z)",
          "everywhere": "everywhere"}
@@ -39,9 +37,9 @@ def patches():
         for zone, formula in ZONES.items():
             for scheme, overlap in (("exchange", 0), ("splice", 0), ("blending", 1)):
                 run = run_quietly(name, {"Coupling/Zone": formula, "Coupling/Scheme": scheme, "Coupling/Overlap": str(overlap)})
-                model = run.model(BOTH)
+                model = run.model(COUPLED)
                 found = model["certificate"]
-                patch, error = found["patch error"], run.error(BOTH)
+                patch, error = found["patch error"], run.error(COUPLED)
                 balance = model["heat balance"]
                 loss = abs(balance["imbalance"]) / balance["throughput"]
                 rows.append((name, zone, scheme, str(model["bonds"]), f"{error:.1e}", f"{patch['linear']:.1e}",
@@ -59,8 +57,8 @@ def patches():
                     check(any("linear field" in note for note in run.summary["notes"]), f"{name}, {scheme}: the note tells of the error")
     print_table("Patch tests", ("scene", "zone", "scheme", "bonds", "error", "linear", "quadratic", "cubic", "asymmetry", "lost heat"), rows)
     layers = run_quietly("two_layers.prm")
-    check_less(layers.error(BOTH), 1e-10, "layers 1:1000")
-    check(0 < layers.model(BOTH)["bonds"] < layers.model(BOTH)["certificate"]["full peridynamics"]["bonds"], "layers: bonds, but none across")
+    check_less(layers.error(COUPLED), 1e-10, "layers 1:1000")
+    check(0 < layers.model(COUPLED)["bonds"] < layers.model(COUPLED)["certificate"]["full peridynamics"]["bonds"], "layers: bonds, but none across")
 
 
 def smooth():
@@ -71,7 +69,7 @@ def smooth():
     for zone, formula in ZONES.items():
         errors = [run_quietly("patch_2d.prm", {"Domain/Cells": f"{n}, {n}", "Coupling/Zone": formula, "Coupling/Certificate": "false",
                                            "Boundary conditions/Dirichlet": "left: 0; right: 0; bottom: 0; top: 0",
-                                           "Initial and source/Source": f"2*{pi}^2*{field}", "Reference/Solution": field}).error(BOTH)
+                                           "Initial and source/Source": f"2*{pi}^2*{field}", "Reference/Solution": field}).error(COUPLED)
                   for n in counts]
         order = math.log2(errors[1] / errors[2])
         rows.append((zone, *(f"{e:.2e}" for e in errors), f"{order:.2f}"))
@@ -103,7 +101,7 @@ def crack():
     n = 121
     steady = {"Output/Line": "", "Output/Write at": "", "Time/Steady": "true", "Solver/Tolerance": "1e-10"}
     fine = {c: nodal_values(run_quietly("insulated_crack.prm", steady, {
-        "Models": FEM, "Domain/Cells": f"{c}, {c}", "Cracks/Mesh": "faces", "Peridynamics/Surface correction": "none"}, probes=nodes(n)), FEM)
+        "Models": FE, "Domain/Cells": f"{c}, {c}", "Cracks/Mesh": "faces", "Peridynamics/Surface correction": "none"}, probes=nodes(n)), FE)
         for c in (240, 480, 960)}
     first, exact = ([2 * b - a for a, b in zip(fine[c], fine[2 * c])] for c in (240, 480))
     own = distance(n, first, exact)
@@ -124,13 +122,13 @@ def crack():
         return run.model(model)
 
     # Measured: 2.9e-3, 1.3e-3, 1.9e-3, 8.6e-3, 7.5e-3, 7.7e-3.
-    case("elements, scaled", FEM, 4.3e-3)
-    zone = case("c = 1, scaled", BOTH, 1.9e-3)
+    case("elements, scaled", FE, 4.3e-3)
+    zone = case("c = 1, scaled", COUPLED, 1.9e-3)
     check_close(zone["bonds"], 3664, what="bonds of the zone")
     case("exchange, scaled", PD, 2.9e-3)
     none = {"Peridynamics__Surface_correction": "none"}
-    case("elements", FEM, 1.3e-2, **none)
-    case("c = 1", BOTH, 1.15e-2, **none)
+    case("elements", FE, 1.3e-2, **none)
+    case("c = 1", COUPLED, 1.15e-2, **none)
     case("exchange", PD, 1.15e-2, **none)
     raw = case("raw, m = 6.5", PD, 8.8e-2, Peridynamics__Horizon_ratio="6.5", Peridynamics__Boundary_treatment="none", **none)
     # The error that the published settings make: 5.9 %, with a million bonds.
@@ -138,7 +136,7 @@ def crack():
     check_close(raw["bonds"], 1008540, relative=1e-4, what="bonds, raw, m = 6.5")
     for c, limit in (("0.5", 3e-3), ("2", 2e-4)):
         for what, more in (("", none), (", scaled", {})):
-            case(f"c = {c}{what}", BOTH, 1.2e-2, Coupling__Zone=f"cracks: {c}", **more)
+            case(f"c = {c}{what}", COUPLED, 1.2e-2, Coupling__Zone=f"cracks: {c}", **more)
             gap = distance(n, values[f"c = {c}{what}"], values["exchange" + what])
             rows.append((f"c = {c}{what}, from full exchange", "", f"{gap:.2e}", "", "", "", ""))
             check_less(gap, limit, f"c = {c}{what}: distance to peridynamics in the whole body")
@@ -151,15 +149,15 @@ def compared():
     run = run_quietly("insulated_crack.prm", {"Domain/Cells": f"{n}, {n}", "Output/Line": "", "Coupling/Certificate": "false"}, probes=nodes(n))
     found = run.summary["comparisons"]
     check(sorted(found) == ["coupled minus finite elements", "coupled minus peridynamics"], f"comparisons: {sorted(found)}")
-    for other in (FEM, PD):
+    for other in (FE, PD):
         entry = found[f"coupled minus {other}"]
         for k, t in enumerate(times):
-            here, there = nodal_values(run, BOTH, t), nodal_values(run, other, t)
+            here, there = nodal_values(run, COUPLED, t), nodal_values(run, other, t)
             what = f"coupled minus {other}, t = {t}"
             check(entry["relative l2"][k][0] == t == entry["maximum"][k][0], f"{what}: time {entry['relative l2'][k][0]}")
             check_close(entry["relative l2"][k][1], distance(n, here, there), relative=1e-9, what=f"{what}: relative L2")
             check_close(entry["maximum"][k][1], max(abs(a - b) for a, b in zip(here, there)), relative=1e-9, what=f"{what}: maximum")
-    pd, fem = nodal_values(run, PD, 0.5), nodal_values(run, FEM, 0.5)
+    pd, fem = nodal_values(run, PD, 0.5), nodal_values(run, FE, 0.5)
     check_close(run.summary["comparison"]["relative l2"][-1][1], distance(n, pd, fem), relative=1e-9, what="peridynamics minus finite elements")
 
 
@@ -178,9 +176,9 @@ def oblique_scene(angle, offset, cells):
 
 def oblique():
     """Five angles, three places each."""
-    cases = {"cells removed": {"Models": FEM, "Cracks/Mesh": "removed"},
-             "pairs": {"Models": FEM, "Peridynamics/Surface correction": "none"},
-             "pairs, scaled": {"Models": FEM}, "coupled, scaled": {"Models": BOTH, "Coupling/Certificate": "false"}}
+    cases = {"cells removed": {"Models": FE, "Cracks/Mesh": "removed"},
+             "pairs": {"Models": FE, "Peridynamics/Surface correction": "none"},
+             "pairs, scaled": {"Models": FE}, "coupled, scaled": {"Models": COUPLED, "Coupling/Certificate": "false"}}
     # Measured (mean, worst): 2.4e-2 and 3.1e-2, 9.9e-3 and 1.4e-2, 3.8e-3 and 6.6e-3, 3.9e-3 and
     # 6.3e-3; at 121 cells 2.3e-3 and 3.9e-3.
     limits = {"cells removed": (3.5e-2, 4.6e-2), "pairs": (1.5e-2, 2e-2), "pairs, scaled": (5.8e-3, 9.9e-3), "coupled, scaled": (5e-3, 8e-3)}
@@ -210,17 +208,17 @@ def growing():
     rows = []
     for c, limit in (("1", 3e-3), ("2", 3e-4)):
         run = run_quietly("growing_cracks.prm", coarse, {"Coupling/Zone": f"cracks: {c}"}, probes=nodes(n))
-        gaps = [distance(n, nodal_values(run, BOTH, t), nodal_values(full, PD, t)) for t in times]
-        rows.append((c, str(run.model(BOTH)["bonds"]), *(f"{gap:.1e}" for gap in gaps)))
+        gaps = [distance(n, nodal_values(run, COUPLED, t), nodal_values(full, PD, t)) for t in times]
+        rows.append((c, str(run.model(COUPLED)["bonds"]), *(f"{gap:.1e}" for gap in gaps)))
         check_less(max(gaps), limit, f"c = {c}: largest distance to full peridynamics")
-        balance = run.model(BOTH)["heat balance"]
+        balance = run.model(COUPLED)["heat balance"]
         check_less(abs(balance["imbalance"]), 1e-10 * balance["throughput"], f"c = {c}: imbalance of heat")
-        check(run.model(BOTH)["bonds"] < 0.5 * full.model(PD)["bonds"], f"c = {c}: fewer bonds")
+        check(run.model(COUPLED)["bonds"] < 0.5 * full.model(PD)["bonds"], f"c = {c}: fewer bonds")
     print_table("Growing cracks: relative L2 distance from full peridynamics", ("c", "bonds", *(f"t = {t}" for t in times)), rows)
     # Scaled cells beside the cracks get stiffer as these cross, on a graded mesh most: explicit steps have to follow.
-    stiff = {"Models": FEM, "Domain/Cells": "64, 64", "Domain/Coarsening": "2", "Peridynamics/Surface correction": "crack scaling"}
+    stiff = {"Models": FE, "Domain/Cells": "64, 64", "Domain/Coarsening": "2", "Peridynamics/Surface correction": "crack scaling"}
     explicit, implicit = (run_quietly("growing_cracks.prm", stiff, {"Time/Stepper": stepper, "Time/Tolerance": "1e-6"}) for stepper in ("chebyshev", "sdirk2"))
-    for mine, theirs in zip(explicit.rows(FEM), implicit.rows(FEM)):
+    for mine, theirs in zip(explicit.rows(FE), implicit.rows(FE)):
         check_close(mine["value"], theirs["value"], absolute=0.02, what=f"explicit steps beside cracks that cross, t = {mine['time']}")
 
 
@@ -231,15 +229,15 @@ def others():
     for name, allowed, apart in (("crack_leaving_body.prm", 1.5e-3, 1.7e-3), ("graded_material_crack.prm", 4.8e-3, 5.1e-3),
                                  ("hole_beside_crack.prm", 5.1e-4, 2.2e-3), ("square_crack_3d.prm", 1.1e-3, 3e-3), ("distorted_mesh.prm", 6.7e-3, 0.4)):
         run = run_quietly(name)
-        heats = [next(iter(run.model(m)["boundary flux"].values())) for m in (FEM, BOTH)]
+        heats = [next(iter(run.model(m)["boundary flux"].values())) for m in (FE, COUPLED)]
         check_close(heats[1], heats[0], relative=allowed, what=f"{name}: heat of the coupled model")
-        lines = [run.along_line(m) for m in (FEM, BOTH)]
+        lines = [run.along_line(m) for m in (FE, COUPLED)]
         gap = max(abs(a - b) for a, b in zip(*lines))
         check_less(gap, apart, f"{name}: largest difference along the line")
         print(f"{name}: heat {heats[0]:.6g} and {heats[1]:.6g}, largest difference along the line {gap:.2e}")
-        balance = run.model(BOTH)["heat balance"]
+        balance = run.model(COUPLED)["heat balance"]
         check_less(abs(balance["imbalance"]) / balance["throughput"], 1e-9, f"{name}: imbalance of heat")
-        found = run.model(BOTH)["certificate"]
+        found = run.model(COUPLED)["certificate"]
         check_less(found["patch error"]["linear"], 1e-12, f"{name}: linear patch error")
         kept = found["share of the conductance kept"]
         check(0.5 < kept < 1 if name == "distorted_mesh.prm" else kept == 1, f"{name}: share of the conductance kept {kept}")
@@ -251,17 +249,17 @@ def graded():
     rows = []
     for levels in range(4):
         run = run_quietly("graded_mesh.prm", {"Domain/Coarsening": str(levels)})
-        model = run.model(BOTH)
-        rows.append((str(levels), str(model["unknowns"]), str(model["nonzeros"]), f"{run.error(FEM):.2e}", f"{run.error(BOTH):.2e}"))
+        model = run.model(COUPLED)
+        rows.append((str(levels), str(model["unknowns"]), str(model["nonzeros"]), f"{run.error(FE):.2e}", f"{run.error(COUPLED):.2e}"))
         check_less(model["certificate"]["patch error"]["linear"], 1e-12, f"merged {levels} times: linear patch error")
         check_less(model["certificate"]["asymmetry"], 1e-13, f"merged {levels} times: asymmetry")
         # Measured: 1.82e-3, 1.77e-3, 1.69e-3, 1.62e-3.
-        check_less(run.error(BOTH), 2.7e-3, f"merged {levels} times: error")
-    print_table("Graded meshes: unknowns, nonzeros and errors", ("merged", "unknowns", "nonzeros", FEM, BOTH), rows)
+        check_less(run.error(COUPLED), 2.7e-3, f"merged {levels} times: error")
+    print_table("Graded meshes: unknowns, nonzeros and errors", ("merged", "unknowns", "nonzeros", FE, COUPLED), rows)
     check(10 * int(rows[3][1]) < int(rows[0][1]), "a tenth of the unknowns")
 
     steady = run_quietly("graded_mesh.prm", {"Coupling/Zone": "adaptive"})
-    check_less(steady.error(BOTH), 2.7e-3, "steady, adapted: error")
+    check_less(steady.error(COUPLED), 2.7e-3, "steady, adapted: error")
     check(any("adapted" in note for note in steady.summary["notes"]), "steady: the note tells of the mesh")
 
     # On the same cells, although the cracks run along rows of nodes.
@@ -271,8 +269,8 @@ def graded():
     gap = max(abs(a["value"] - b["value"]) for a, b in zip(adapted.probes, uniform.probes)) / 200
     print(f"growing cracks, adapted and uniform mesh: largest difference at the probes {gap:.1e} of the range")
     check_less(gap, 1.8e-4, "adapted mesh against the uniform one")  # measured: 1.2e-4
-    check_less(adapted.model(BOTH)["unknowns"], 0.5 * uniform.model(BOTH)["unknowns"], "adapted: unknowns")
-    balance = adapted.model(BOTH)["heat balance"]
+    check_less(adapted.model(COUPLED)["unknowns"], 0.5 * uniform.model(COUPLED)["unknowns"], "adapted: unknowns")
+    balance = adapted.model(COUPLED)["heat balance"]
     check_less(abs(balance["imbalance"]), 1e-10 * balance["throughput"], "adapted: imbalance of heat")
     closed = run_quietly("adaptive_zone.prm", small, {"Boundary conditions/Dirichlet": "", "Initial and source/Initial value": "1 + sin(3*y + x)",
                                                   "Material/Density": "1 + x*x"})
@@ -281,12 +279,5 @@ def graded():
     check_less(max(heats) - min(heats), 1e-11 * heats[0], "insulated body: heat conserved through all changes of the mesh")
 
 
-def main():
-    parts = {f.__name__: f for f in (patches, smooth, crack, compared, oblique, growing, others, graded)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(patches, smooth, crack, compared, oblique, growing, others, graded)

@@ -8,14 +8,10 @@
 """
 
 import math
-import os
-import sys
-import tempfile
 
-from scene_test import Comparison, check, check_close, finish, run_scene
-from scene_texts import PULLED_STRIP
+from scene_test import COUPLED, FE, PD, Comparison, check, check_close, run_parts, run_scene, scene_text, write_file
+from scene_texts import PULLED_STRIP, mesh_text
 
-FEM, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 SHIFT = 1e-9
 POINTS = [(0, 0.1), (0, -0.1), (0.3, 0.07), (0.3, -0.07)]
 PROBES = " ; ".join(f"{x!r},{y!r}" for x, y in POINTS)
@@ -36,13 +32,13 @@ def is_antisymmetric(run, model, what):
     check_close(found[0::2], [-T for T in found[1::2]], absolute=1e-8, what=f"{what}, {model}: above and below")
 
 
-def plate(cells, crack="-0.5,0 ; 0.5,0", models=f"{FEM}, {PD}, {COUPLED}", ranks=1, **more):
+def plate(cells, crack="-0.5,0 ; 0.5,0", models=f"{FE}, {PD}, {COUPLED}", ranks=1, **more):
     return run_scene("prm/quick_start.prm", {**QUIET, "Models": models, "Domain/Cells": cells, "Cracks/Segments": crack, **more}, ranks=ranks)
 
 
 def heat():
     """A plate that is hot above and cold below; the crack on a row of nodes, beside it, and between rows."""
-    models = (FEM, PD, COUPLED)
+    models = (FE, PD, COUPLED)
     on, between = plate("20, 20"), plate("20, 21")
     check(any("Crack 1" in note and "20, 21" in note for note in on.summary["notes"]), f"a note names the cells: {on.summary['notes']}")
     beside = [plate("20, 20", f"-0.5,{y} ; 0.5,{y}") for y in (SHIFT, -SHIFT)]
@@ -82,10 +78,10 @@ def heat():
     check(any("left side" in note for note in fixed.summary["notes"]), f"a note where cells are fixed: {fixed.summary['notes']}")
 
     # Three dimensions.
-    block = {"Domain/Cells": "8, 8, 8", "Output/Fields": "none", "Output/Write at": "", "Output/Line": "", "Time/Steady": "true", "Models": f"{FEM}, {COUPLED}"}
+    block = {"Domain/Cells": "8, 8, 8", "Output/Fields": "none", "Output/Write at": "", "Output/Line": "", "Time/Steady": "true", "Models": f"{FE}, {COUPLED}"}
     square = "0.25,{0},0.25 ; 0.75,{0},0.25 ; 0.75,{0},0.75 ; 0.25,{0},0.75"
     solved = [run_scene("prm/heat/block_with_crack.prm", {**block, "Cracks/Polygons": square.format(y)}) for y in (0.5, 0.5 + SHIFT)]
-    for model in (FEM, COUPLED):
+    for model in (FE, COUPLED):
         first, second = ([row["value"] for row in run.rows(model)] for run in solved)
         check(len(first) > 0, "the block has probes")
         check_close(first, second, relative=1e-6, what=f"{model}: block, moved by 1e-9")
@@ -95,7 +91,7 @@ def heat():
 HELD = {"Material/Young modulus": "1", "Boundary conditions/Traction": "top: 0, 1", "Boundary conditions/Displacement": "bottom: 0, 0", "Output/Fields": "none"}
 
 
-def edge_crack(cells, end, y=0.0, models=f"{FEM}, {COUPLED}"):
+def edge_crack(cells, end, y=0.0, models=f"{FE}, {COUPLED}"):
     return run_scene(PULLED_STRIP, {**HELD, "Domain/Cells": cells, "Cracks/Segments": f"0,{y!r} ; {end!r},{y!r}", "Cracks/Mesh": "removed", "Models": models})
 
 
@@ -113,7 +109,7 @@ def elasticity():
     table = Comparison("K_I over that of the handbook")
     on = edge_crack("40, 121", 0.5)
     rows = [edge_crack("40, 120", 0.5, y) for y in (0.0, SHIFT)]
-    for model, limit in ((FEM, 0.02), (COUPLED, 0.01)):
+    for model, limit in ((FE, 0.02), (COUPLED, 0.01)):
         K = intensity(on, model)
         table.add(f"{model}, 40 x 121 cells", K / handbook(0.5), 1, relative=limit)
         for x in (SHIFT, -SHIFT):
@@ -137,56 +133,38 @@ def fracture():
         check_close([above["ux"], above["uy"]], [below["ux"], -below["uy"]], absolute=1e-6 * size, what="above and below")
 
 
-def write_mesh(path, x, y):
-    """A Gmsh file of rectangles between the lines x and y; sides 1 left, 2 right, 3 bottom, 4 top."""
+def write_mesh(x, y):
+    """A Gmsh file of rectangles between the lines x and y; sides 1 left, 2 right, 3 bottom, 4 top. Returns its path."""
     n, m = len(x), len(y)
     node = lambda i, j: 1 + i + n * j
     elements = [f"1 2 {1 + k} {1 + k} {node(k * (n - 1), j)} {node(k * (n - 1), j + 1)}" for k in (0, 1) for j in range(m - 1)]
     elements += [f"1 2 {3 + k} {3 + k} {node(i, k * (m - 1))} {node(i + 1, k * (m - 1))}" for k in (0, 1) for i in range(n - 1)]
     elements += [f"3 2 9 9 {node(i, j)} {node(i + 1, j)} {node(i + 1, j + 1)} {node(i, j + 1)}" for j in range(m - 1) for i in range(n - 1)]
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{n * m}\n")
-        file.writelines(f"{node(i, j)} {x[i]!r} {y[j]!r} 0\n" for j in range(m) for i in range(n))
-        file.write(f"$EndNodes\n$Elements\n{len(elements)}\n")
-        file.writelines(f"{k + 1} {element}\n" for k, element in enumerate(elements))
-        file.write("$EndElements\n")
+    return write_file("rectangles.msh", mesh_text([f"{x[i]!r} {y[j]!r}" for j in range(m) for i in range(n)], elements))
 
 
 def mesh():
     """`Fracture energy` on a mesh from a file: the lattice's stretch on equal cells, near it on others; the work of tearing."""
-    bar = """
-set Dimension = 2
-set Physics = elasticity
-set Models = peridynamics
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.3
-  set Fracture energy = 1e-4
-end
-subsection Elasticity
-  set Solver = dynamics
-end
-subsection Peridynamics
-  set Horizon = 0.125
-  set Volume fraction = none
-  set Kernel exponent = 0
-end
-subsection Time
-  set End time = 0.2
-end
-subsection Output
-  set Fields = none
-end
-"""
-    folder = tempfile.mkdtemp()
+    bar = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = peridynamics
+Material/Young modulus = 1
+Material/Poisson ratio = 0.3
+Material/Fracture energy = 1e-4
+Elasticity/Solver = dynamics
+Peridynamics/Horizon = 0.125
+Peridynamics/Volume fraction = none
+Peridynamics/Kernel exponent = 0
+Time/End time = 0.2
+Output/Fields = none
+""")
     n = 24
     even = [i / n for i in range(n + 1)]
     uneven = [(i + 0.2 * math.sin(2.7 * i) * (0 < i < n)) / n for i in range(n + 1)]
     stretch = {}
     for name, lines in (("even", even), ("uneven", uneven)):
-        path = os.path.join(folder, name + ".msh")
-        write_mesh(path, lines, lines)
-        on_mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Boundary conditions/Displacement": "1: 0, 0"}
+        on_mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": write_mesh(lines, lines), "Boundary conditions/Displacement": "1: 0, 0"}
         runs = [run_scene(bar, on_mesh, ranks=ranks) for ranks in (1, 2)]
         found = [run.model(PD)["settings"]["critical stretch"] for run in runs]
         check(found[0] == found[1], f"{name}: the same on two processes: {found}")
@@ -243,8 +221,8 @@ def table():
     print("|---|---|---|---|---|---|---|---|---|")
     for figure, name in ((heat_figure, "temperature across"), (opening_figure, "K_I, opening of the mouth"), (strength_figure, "strength")):
         for nodes in ("vertices", "cell centers"):
-            for model in (FEM, PD, COUPLED) if figure != strength_figure else (PD,):
-                if model == COUPLED and nodes != "vertices" or model == FEM and nodes != "vertices":
+            for model in (FE, PD, COUPLED) if figure != strength_figure else (PD,):
+                if model == COUPLED and nodes != "vertices" or model == FE and nodes != "vertices":
                     continue
                 for along in (False, True):
                     values = {d: figure(d * h[figure], along, model, nodes) for d in sorted({d for pair in PAIRS for d in pair})}
@@ -252,15 +230,5 @@ def table():
                     print(f"| {name} | {nodes} | {model} | {'tip' if along else 'crack'} |" + "".join(f" {gap:.1e} |" for gap in gaps), flush=True)
 
 
-def main():
-    parts = {"heat": heat, "elasticity": elasticity, "fracture": fracture, "mesh": mesh}
-    if sys.argv[1:] == ["table"]:
-        table()
-    else:
-        for name in sys.argv[1:] or parts:
-            parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(heat, elasticity, fracture, mesh, table=table)

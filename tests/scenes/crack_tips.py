@@ -11,12 +11,11 @@ import glob
 import math
 import os
 import re
-import sys
 
-from fracture import DISSIPATED, ENERGY, PD, history
+from fracture import DISSIPATED, ENERGY, history
 from resume import check_stopped, new_folder, tables_of
 from resume import run as run_in_folder
-from scene_test import Comparison, check, check_close, check_less, finish, run_scene
+from scene_test import PD, Comparison, check, check_close, check_less, run_parts, run_scene
 
 LENGTH, TIP = "crack length", "crack 1 end 2"
 OF_TIP = [f"{what} at {TIP}" for what in ("tip x", "tip y", LENGTH)]
@@ -148,12 +147,5 @@ def resume():
         check(texts[0] == texts[1], f"{name} differs")
 
 
-def main():
-    parts = {function.__name__: function for function in (rest, motion, space, ranks, resume)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(rest, motion, space, ranks, resume)

@@ -6,53 +6,23 @@
 """
 
 import math
-import os
-import sys
-import tempfile
 
-from scene_test import check, check_close, finish, run_perideal, run_scene
+from scene_test import BC, FE, PD, check, check_close, run_parts, run_perideal, run_scene, scene_text, write_file
+from scene_texts import mesh_text
 
-FE, PD = "finite elements", "peridynamics"
-BC = "Boundary conditions/"
 
-PLATE = """
-set Title     = Plate with holes
-set Dimension = 2
-subsection Domain
-  set Cells = 20, 20
-  set Holes = circle: 0.5, 0.5, 0.2 ; rectangle: 0.1, 0.1, 0.2, 0.2
-end
-subsection Boundary conditions
-  set Dirichlet = top: 1 ; bottom: 0
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-  set Line   = 0,0.5 ; 1,0.5 ; 21
-end
-"""
+PLATE = scene_text("""
+Title = Plate with holes
+Dimension = 2
+Domain/Cells = 20, 20
+Domain/Holes = circle: 0.5, 0.5, 0.2 ; rectangle: 0.1, 0.1, 0.2, 0.2
+Boundary conditions/Dirichlet = top: 1 ; bottom: 0
+Time/Steady = true
+Output/Fields = none
+Output/Line = 0,0.5 ; 1,0.5 ; 21
+""")
 ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/Poisson ratio": "0.3", BC + "Dirichlet": "",
            BC + "Displacement": "bottom: 0, 0", BC + "Traction": "top: 0, 1", "Time/Steady": "false"}
-QUADS = """$MeshFormat
-2.2 0 8
-$EndMeshFormat
-$PhysicalNames
-3
-1 1 "plane x"
-1 2 "plane y"
-1 3 "skin"
-$EndPhysicalNames
-$Nodes
-{n_nodes}
-{nodes}
-$EndNodes
-$Elements
-{n_elements}
-{elements}
-$EndElements
-"""
 
 
 def quarter_ring(n=6, inner=1.0, outer=2.0):
@@ -61,15 +31,14 @@ def quarter_ring(n=6, inner=1.0, outer=2.0):
     for j in range(2 * n + 1):
         for i in range(n + 1):
             r, angle = inner + (outer - inner) * i / n, 0.5 * math.pi * j / (2 * n)
-            nodes.append(f"{1 + i + j * (n + 1)} {r * math.cos(angle):.15g} {r * math.sin(angle):.15g} 0")
+            nodes.append(f"{r * math.cos(angle):.15g} {r * math.sin(angle):.15g}")
     at = lambda i, j: 1 + i + j * (n + 1)
     for i in range(n):
         elements += [f"1 2 2 2 {at(i, 0)} {at(i + 1, 0)}", f"1 2 1 1 {at(i, 2 * n)} {at(i + 1, 2 * n)}"]
     for j in range(2 * n):
         elements += [f"1 2 3 3 {at(i, j)} {at(i, j + 1)}" for i in (0, n)]
         elements += [f"3 2 9 9 {at(i, j)} {at(i + 1, j)} {at(i + 1, j + 1)} {at(i, j + 1)}" for i in range(n)]
-    elements = [f"{k + 1} {e}" for k, e in enumerate(elements)]
-    return QUADS.format(n_nodes=len(nodes), nodes="\n".join(nodes), n_elements=len(elements), elements="\n".join(elements))
+    return mesh_text(nodes, elements, ("plane x", "plane y", "skin"))
 
 
 def said(run, *words):
@@ -83,18 +52,14 @@ def not_said(run, word):
     check(not any(word in n for n in run.summary["notes"]), f"a note says '{word}': {run.summary['notes']}")
 
 
-def check_command(folder, text, overrides):
+def check_command(text, overrides):
     """What `perideal check` says of a scene."""
-    path = os.path.join(folder, "checked.prm")
-    with open(path, "w") as file:
-        file.write(text)
-    status, stdout, stderr = run_perideal(["check", path] + [w for e, v in overrides.items() for w in ("-s", f"{e}={v}")])
+    status, stdout, stderr = run_perideal(["check", write_file("checked.prm", text)] + [w for e, v in overrides.items() for w in ("-s", f"{e}={v}")])
     return status, stdout + stderr
 
 
 def gaps():
     """A line through a hole has gaps, exactly where there is no body, whatever the model, the nodes and the number of processes."""
-    folder = tempfile.mkdtemp(prefix="perideal_")
     for physics, more in (("heat", {}), ("elasticity", ELASTIC)):
         column = "value" if physics == "heat" else "uy"
         for nodes in ("vertices", "cell centers"):
@@ -115,24 +80,21 @@ def gaps():
             not_said(inside, "'Line'")
             for a, b in zip(inside.rows(PD, table="line.csv"), runs[0].rows(PD, table="line.csv")):
                 check_close(a[column], b[column], absolute=1e-10, what=f"{physics}, {nodes}: value at {a['x']}")
-    status, text = check_command(folder, PLATE, {})
+    status, text = check_command(PLATE, {})
     check(status == 0 and "outside the body" in text, f"perideal check does not tell of gaps: {text}")
     for more in ({}, ELASTIC):
-        status, text = check_command(folder, PLATE, {**more, "Output/Line": "", "Output/Probes": "0.3,0.3 ; 0.52,0.48"})
+        status, text = check_command(PLATE, {**more, "Output/Line": "", "Output/Probes": "0.3,0.3 ; 0.52,0.48"})
         check(status == 1 and "'Probes'" in text and "(0.52, 0.48)" in text and "in a hole" in text, f"a probe in a hole: {text}")
     # Meshes from files: found before anything is computed, by `check`, too.
-    mesh = os.path.join(folder, "ring.msh")
-    with open(mesh, "w") as file:
-        file.write(quarter_ring())
+    mesh = write_file("ring.msh", quarter_ring())
     ring = {**ELASTIC, "Domain/Holes": "", "Domain/Shape": "mesh file", "Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.5",
             BC + "Displacement": "plane x: 0, free ; plane y: free, 0", BC + "Traction": "skin: x, y", "Output/Line": "0,0 ; 1.5,1.5 ; 16"}
     run = run_scene(PLATE, ring)
     said(run, "'Line'", "9 of its 16 points lie outside", "(0, 0)", "(1.5, 1.5)")
-    status, text = check_command(folder, PLATE, {**ring, "Output/Probes": "0.1,0.1"})
+    status, text = check_command(PLATE, {**ring, "Output/Probes": "0.1,0.1"})
     check(status == 1 and "'Probes'" in text and "(0.1, 0.1)" in text, f"a probe outside a mesh: {text}")
-    status, text = check_command(folder, PLATE, {**ring, "Output/Line": "0,0 ; 0.1,0.1 ; 3"})
+    status, text = check_command(PLATE, {**ring, "Output/Line": "0,0 ; 0.1,0.1 ; 3"})
     check(status == 1 and "'Line'" in text and "none of its points" in text, f"a line outside a mesh: {text}")
-    return folder
 
 
 def entries():
@@ -159,10 +121,7 @@ def entries():
 
 def symmetry():
     """On a mesh from a file a plane of symmetry is insulated for a computed temperature: as where the same planes are held by displacements."""
-    folder = tempfile.mkdtemp(prefix="perideal_")
-    mesh = os.path.join(folder, "ring.msh")
-    with open(mesh, "w") as file:
-        file.write(quarter_ring())
+    mesh = write_file("ring.msh", quarter_ring())
     ring = {**ELASTIC, "Domain/Holes": "", "Domain/Shape": "mesh file", "Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.5",
             "Material/Thermal expansion": "1e-3", "Elasticity/Temperature change": "computed", BC + "Traction": "skin: x, y",
             BC + "Dirichlet": "skin: if(x^2 + y^2 < 2, 1, 0)", "Time/Steady": "true", "Output/Line": "", "Output/Probes": "1.06,1.06 ; 1.5,0"}
@@ -175,41 +134,26 @@ def symmetry():
                     what="temperature of peridynamics")
     heat = {"Domain/Holes": "", "Domain/Shape": "mesh file", "Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.5", BC + "Dirichlet": "skin: x",
             BC + "Symmetry": "plane x", "Output/Line": ""}
-    status, text = check_command(folder, PLATE, heat)
+    status, text = check_command(PLATE, heat)
     check(status == 1 and "'Symmetry'" in text and "Leave the entry out" in text, f"symmetry of heat on a mesh: {text}")
     run_scene(PLATE, {**heat, "Models": FE})
-    return folder
 
 
-TORN = """
-set Title     = A breakable plate, suddenly pulled
-set Physics   = elasticity
-set Models    = peridynamics
-subsection Domain
-  set Cells = 16, 17
-end
-subsection Material
-  set Young modulus    = 200
-  set Poisson ratio    = 0.3
-  set Density          = 2
-  set Critical stretch = 0.01
-end
-subsection Boundary conditions
-  set Traction = top: 0, 20 ; bottom: 0, -20
-end
-subsection Peridynamics
-  set Surface correction = none
-end
-subsection Elasticity
-  set Solver = dynamics
-end
-subsection Time
-  set End time = 0.02
-end
-subsection Output
-  set Fields = none
-end
-"""
+TORN = scene_text("""
+Title = A breakable plate, suddenly pulled
+Physics = elasticity
+Models = peridynamics
+Domain/Cells = 16, 17
+Material/Young modulus = 200
+Material/Poisson ratio = 0.3
+Material/Density = 2
+Material/Critical stretch = 0.01
+Boundary conditions/Traction = top: 0, 20 ; bottom: 0, -20
+Peridynamics/Surface correction = none
+Elasticity/Solver = dynamics
+Time/End time = 0.02
+Output/Fields = none
+""")
 
 
 def torn():
@@ -242,19 +186,16 @@ def torn():
 
 def loose():
     """Parts that cracks cut off and loads pull: `perideal check` finds them, on lattices that it estimates by coarse ones, too, and nothing where they are held."""
-    folder = tempfile.mkdtemp(prefix="perideal_")
     cut = {**ELASTIC, "Domain/Holes": "", "Output/Line": "", "Time/Steady": "true", BC + "Traction": "right: if(y > 0.6, 1, 0), 0",
            "Cracks/Segments": "-1, 0.52 ; 2, 0.52", "Peridynamics/Horizon": "0.02"}
     for model in (FE, PD):
         for cells in (100, 180):  # 20,000 unknowns, and 65,000, an estimate of whose coarse lattices precedes
             settings = {**cut, "Models": model, "Domain/Cells": f"{cells}, {cells}"}
-            status, text = check_command(folder, PLATE, settings)
+            status, text = check_command(PLATE, settings)
             check(status == 1 and "Nothing holds a part" in text and "'Displacement'" in text, f"{model}, {cells} cells: {text}")
-            status, text = check_command(folder, PLATE, {**settings, BC + "Displacement": "bottom: 0, 0 ; top: 0, 0"})
+            status, text = check_command(PLATE, {**settings, BC + "Displacement": "bottom: 0, 0 ; top: 0, 0"})
             check(status == 0 and "time: about" in text, f"held on both sides, {model}, {cells} cells: {text}")
-    return folder
 
 
-DOUBTS = {"gaps": gaps, "entries": entries, "symmetry": symmetry, "torn": torn, "loose": loose}
-
-finish(*[folder for folder in [DOUBTS[wanted]() for wanted in sys.argv[1:] or DOUBTS] if folder])
+if __name__ == "__main__":
+    run_parts(gaps, entries, symmetry, torn, loose)

@@ -6,10 +6,9 @@
 """
 
 import math
-import sys
 
 from cracked_plate import HALF, Plate
-from scene_test import Comparison, check_message, finish, print_table, run_scene
+from scene_test import Comparison, check_message, print_table, run_parts, run_scene
 
 SCENE = "prm/elasticity/coupled_crack.prm"
 BLENDED = "prm/elasticity/blended_crack.prm"
@@ -190,11 +189,5 @@ def ranks():
     table.show()
 
 
-def main():
-    parts = {function.__name__: function for function in (opening, mixed, schemes, meshes, ranks)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
-main()
+if __name__ == "__main__":
+    run_parts(opening, mixed, schemes, meshes, ranks)

@@ -14,88 +14,59 @@ import sys
 import h5py
 import numpy as np
 
-from scene_test import SOURCE_DIR, check, check_close, finish, run_scene
+from scene_test import FE, PD, SOURCE_DIR, check, check_close, run_parts, run_scene, scene_text
 
-FEM, PD = "finite elements", "peridynamics"
 
-BAR = """set Title = Bar
-set Dimension = 1
-set Physics = elasticity
-set Models = finite elements, peridynamics
-subsection Domain
-  set Upper corner = 10
-  set Cells = 40
-end
-subsection Material
-  set Young modulus = 200
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Displacement = left: 0
-  set Traction = right: 1
-end
-subsection Output
-  set Probes = 5 ; 10
-  set Line = 0 ; 10 ; 21
-end
-"""
+BAR = scene_text("""
+Title = Bar
+Dimension = 1
+Physics = elasticity
+Models = finite elements, peridynamics
+Domain/Upper corner = 10
+Domain/Cells = 40
+Material/Young modulus = 200
+Material/Poisson ratio = 0.3
+Boundary conditions/Displacement = left: 0
+Boundary conditions/Traction = right: 1
+Output/Probes = 5 ; 10
+Output/Line = 0 ; 10 ; 21
+""")
 
-PLATE = """# A cracked plate of two materials.
-set Title = Plate
-set Dimension = 2
-set Physics = elasticity
-set Models = finite elements, peridynamics
-subsection Domain
-  set Lower corner = -1, -1
-  set Upper corner = 1, 1
-  set Cells = 24, 24
-end
-subsection Material
-  set Bulk modulus = 1e5
-  set Poisson ratio = 0.4
-  subsection Phases
-    set Regions = stiff: y > 0.5
-    set Bulk modulus = stiff: 2e5
-  end
-end
-subsection Cracks
-  set Segments = -0.5, 0 ; 0.5, 0
-  set Mesh = faces
-end
-subsection Boundary conditions
-  set Displacement = bottom: 0, 0
-  set Traction = top: 0.5*x, 1
-end
-subsection Output
-  set Probes = 0, 1 ; 0.52, 0.3
-  set Line = 0.1, -1 ; 0.1, 1 ; 41
-end
-"""
+PLATE = "# A cracked plate of two materials.\n" + scene_text("""
+Title = Plate
+Dimension = 2
+Physics = elasticity
+Models = finite elements, peridynamics
+Domain/Lower corner = -1, -1
+Domain/Upper corner = 1, 1
+Domain/Cells = 24, 24
+Material/Bulk modulus = 1e5
+Material/Poisson ratio = 0.4
+Material/Phases/Regions = stiff: y > 0.5
+Material/Phases/Bulk modulus = stiff: 2e5
+Cracks/Segments = -0.5, 0 ; 0.5, 0
+Cracks/Mesh = faces
+Boundary conditions/Displacement = bottom: 0, 0
+Boundary conditions/Traction = top: 0.5*x, 1
+Output/Probes = 0, 1 ; 0.52, 0.3
+Output/Line = 0.1, -1 ; 0.1, 1 ; 41
+""")
 
-BODY = """set Title = Body
-set Dimension = 3
-set Physics = elasticity
-set Models = finite elements, peridynamics
-subsection Domain
-  set Upper corner = 2, 1, 1
-  set Cells = 12, 6, 6
-end
-subsection Material
-  set Young modulus = 1000
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Displacement = left: 0, 0, 0
-  set Traction = right: 0, -1, 0
-end
-subsection Peridynamics
-  set Horizon ratio = 2
-end
-subsection Output
-  set Probes = 2, 0.5, 0.5 ; 1, 1, 0.5
-  set Line = 0, 1, 0.5 ; 2, 1, 0.5 ; 21
-end
-"""
+BODY = scene_text("""
+Title = Body
+Dimension = 3
+Physics = elasticity
+Models = finite elements, peridynamics
+Domain/Upper corner = 2, 1, 1
+Domain/Cells = 12, 6, 6
+Material/Young modulus = 1000
+Material/Poisson ratio = 0.3
+Boundary conditions/Displacement = left: 0, 0, 0
+Boundary conditions/Traction = right: 0, -1, 0
+Peridynamics/Horizon ratio = 2
+Output/Probes = 2, 0.5, 0.5 ; 1, 1, 0.5
+Output/Line = 0, 1, 0.5 ; 2, 1, 0.5 ; 21
+""")
 
 
 def written(value, digits=6):
@@ -120,8 +91,8 @@ def report_of(run):
 def check_tables(run, rows):
     """Numbers of tables are those of probes.csv, totals.csv and summary.json."""
     columns = [c for c in run.probes[0] if c not in ("time", "model", "x", "y", "z")]
-    of_model = {m: run.rows(m) for m in (FEM, PD)}
-    expected = [[written(of_model[m][k][c]) for m in (FEM, PD)] for k in range(len(of_model[FEM])) for c in columns]
+    of_model = {m: run.rows(m) for m in (FE, PD)}
+    expected = [[written(of_model[m][k][c]) for m in (FE, PD)] for k in range(len(of_model[FE])) for c in columns]
     names = [c.replace("von_mises", "von Mises") for c in columns]
     found = [row[1:3] for row in rows if len(row) == 4 and row[0].split(" (")[0] in names]
     check(found == expected, "the table of probes has the numbers of probes.csv")
@@ -130,23 +101,23 @@ def check_tables(run, rows):
         row = next((r for r in rows if r[0].split(" (")[0] == quantity.capitalize()), None)
         unit = {"strain energy": {1: "J/m²", 2: "J/m", 3: "J"}[run.summary["dimension"]]}.get(quantity, "Pa")
         check(row is not None and row[0].endswith(f" ({unit})"), f"the unit of {quantity} is {unit}")
-        check(row is not None and row[1:] == [written(totals[m, quantity]) for m in (FEM, PD)], f"{quantity} is that of totals.csv")
+        check(row is not None and row[1:] == [written(totals[m, quantity]) for m in (FE, PD)], f"{quantity} is that of totals.csv")
     for side, force in run.model(PD)["boundary force"].items():
         for d, value in enumerate(force):
             row = next(r for r in rows if r[0] == f"{side}, in {'xyz'[d]}")
-            check(row[2:] == [written(run.model(FEM)["boundary force"][side][d]), written(value)], f"force on {side} in {'xyz'[d]}")
+            check(row[2:] == [written(run.model(FE)["boundary force"][side][d]), written(value)], f"force on {side} in {'xyz'[d]}")
 
 
 def check_comparison(run, dimension):
     """The comparison in the summary against that of the fields, whose nodes share the cells around them."""
     u = {}
-    for model in (FEM, PD):
+    for model in (FE, PD):
         with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][model])) as file:
             u[model] = file["displacement"][:, :dimension]
     # Field files have single precision, 6e-8 of the displacement. On a lattice each vertex of a
     # cell has an equal share of its volume.
-    gap = np.linalg.norm(u[PD] - u[FEM], axis=1)
-    relative = math.sqrt((gap ** 2).sum() / (u[FEM] ** 2).sum())
+    gap = np.linalg.norm(u[PD] - u[FE], axis=1)
+    relative = math.sqrt((gap ** 2).sum() / (u[FE] ** 2).sum())
     found = run.summary["comparison"]
     check_close(found["relative l2"][-1][1], relative, relative=1e-6, what="relative L2 difference of the displacements")
     check_close(found["maximum"][-1][1], gap.max(), absolute=1.2e-7 * np.abs(u[PD]).max(), what="largest difference of the displacements")
@@ -161,7 +132,7 @@ def bar():
     check(run.summary["sides"] == {"left": "displacement 0", "right": "traction 1"}, f"sides are {run.summary['sides']}")
     check(run.summary["values on sides"]["right"] == {"traction": {"at": [[10.0]], "values": [[1.0]]}}, "the traction at the end")
     check("The largest magnitude" in text and "1D, static" in text, "a bar at rest")
-    check_close(run.probe(FEM, (10,), column="ux"), 10 / 200, relative=1e-12, what="elongation")
+    check_close(run.probe(FE, (10,), column="ux"), 10 / 200, relative=1e-12, what="elongation")
 
 
 def plate():
@@ -227,10 +198,10 @@ def loaded_until_it_breaks():
     check(n_images == 18, f"sketch, 4 displacements, 6 stresses, 2 damages, forces twice, energies, the growth of the crack and totals are drawn: {n_images}")
     check("2D, slowly loaded" in text and "slowly loaded up to t = 1 s, was computed" in text, "a slowly loaded body")
     check(bonds_sentence(run, "at") in text, f"the report says: {bonds_sentence(run, 'at')}")
-    peaks = {m: max(over_time(run, m, "force on top in y"), key=lambda pair: abs(pair[1])) for m in (FEM, PD)}
+    peaks = {m: max(over_time(run, m, "force on top in y"), key=lambda pair: abs(pair[1])) for m in (FE, PD)}
     listed = " and ".join(f"{written(v, 4)} N/m at t = {written(t, 4)} s ({m})" for m, (t, v) in peaks.items())
     check(f"The largest force on top, in y, was {listed}." in text, f"the largest force on top is {listed}")
-    check(0.5 < peaks[PD][0] < 1 and peaks[FEM][0] == 1, "peridynamics breaks before the end, finite elements never")
+    check(0.5 < peaks[PD][0] < 1 and peaks[FE][0] == 1, "peridynamics breaks before the end, finite elements never")
     check("Above, the force on top in y; that on bottom is equal and opposite; below, the bonds that have broken." in text,
           "forces and broken bonds over time")
     balance = run.model(PD)["energy balance"]
@@ -274,12 +245,5 @@ def fracture():
     branching()
 
 
-def main():
-    parts = {function.__name__: function for function in (bar, plate, body, fracture)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(bar, plate, body, fracture)

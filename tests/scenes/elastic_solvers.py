@@ -8,75 +8,47 @@
 """
 
 import math
-import sys
 
-from scene_test import check, check_close, check_less, finish, observed_orders, print_table, run_scene
+from scene_test import FE, PD, check, check_close, check_less, observed_orders, print_table, run_parts, run_scene, scene_text
 
-FEM, PD = "finite elements", "peridynamics"
 
-PLATE = """
-set Title     = Plate under its own weight and a pull
-set Dimension = 2
-set Physics   = elasticity
-set Models    = peridynamics
-subsection Domain
-  set Lower corner = 0, 0
-  set Upper corner = 1, 1
-  set Cells        = 24, 24
-end
-subsection Material
-  set Young modulus = 3
-  set Poisson ratio = 0.3
-end
-subsection Initial and source
-  set Body force = 0, -0.1
-end
-subsection Boundary conditions
-  set Displacement = left: 0, 0
-  set Traction     = right: 0.1, 0
-end
-subsection Solver
-  set Direct solver up to = 200
-end
-subsection Output
-  set Fields = none
-  set Line   = 0,0.5 ; 1,0.6 ; 25
-end
-"""
+PLATE = scene_text("""
+Title = Plate under its own weight and a pull
+Dimension = 2
+Physics = elasticity
+Models = peridynamics
+Domain/Lower corner = 0, 0
+Domain/Upper corner = 1, 1
+Domain/Cells = 24, 24
+Material/Young modulus = 3
+Material/Poisson ratio = 0.3
+Initial and source/Body force = 0, -0.1
+Boundary conditions/Displacement = left: 0, 0
+Boundary conditions/Traction = right: 0.1, 0
+Solver/Direct solver up to = 200
+Output/Fields = none
+Output/Line = 0,0.5 ; 1,0.6 ; 25
+""")
 
-BAR = """
-set Title     = Standing wave in the middle of a long bar
-set Dimension = 1
-set Physics   = elasticity
-set Models    = peridynamics
-subsection Domain
-  set Lower corner = 0
-  set Upper corner = 400
-  set Cells        = 400
-end
-subsection Material
-  set Young modulus = 4
-  set Density       = 0.25
-end
-subsection Initial and source
-  set Initial displacement = 1e-3*cos(0.6*(x - 200))
-end
-subsection Peridynamics
-  set Kernel exponent = 2
-end
-subsection Elasticity
-  set Solver = dynamics
-end
-subsection Time
-  set End time  = 5
-  set Time step = 0.1
-end
-subsection Output
-  set Fields = none
-  set Write every = 1
-  set Probes = 200 ; 205
-end
-"""
+BAR = scene_text("""
+Title = Standing wave in the middle of a long bar
+Dimension = 1
+Physics = elasticity
+Models = peridynamics
+Domain/Lower corner = 0
+Domain/Upper corner = 400
+Domain/Cells = 400
+Material/Young modulus = 4
+Material/Density = 0.25
+Initial and source/Initial displacement = 1e-3*cos(0.6*(x - 200))
+Peridynamics/Kernel exponent = 2
+Elasticity/Solver = dynamics
+Time/End time = 5
+Time/Time step = 0.1
+Output/Fields = none
+Output/Write every = 1
+Output/Probes = 200 ; 205
+""")
 
 
 def displacements(run, model=PD):
@@ -136,7 +108,7 @@ def frequency(wave_number, ratio=3.0):
 def waves():
     """Speed, dispersion, orders and energies."""
     run = run_scene("prm/elasticity/wave_in_bar.prm", {"Output/Fields": "none"})
-    for model, apart in ((FEM, 0.011), (PD, 0.04)):
+    for model, apart in ((FE, 0.011), (PD, 0.04)):
         centres = []
         for t in (0, 5e-5, 1e-4):
             values = run.along_line(model, time=t, column="ux")
@@ -170,7 +142,7 @@ def ranks():
               "Initial and source/Initial velocity": "0, 0.01*x"}
     bend = {"Domain/Upper corner": "1, 0.25", "Domain/Cells": "48, 12", "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients",
             "Boundary conditions/Displacement": "left: 0, 0; right: free, 0.4", "Output/Line": "0,0.1 ; 1,0.2 ; 25"}
-    for what, overrides, models, allowed in (("verlet", motion, (FEM, PD), 1e-13), ("newmark", {**motion, "Time/Stepper": "newmark"}, (FEM, PD), 1e-10),
+    for what, overrides, models, allowed in (("verlet", motion, (FE, PD), 1e-13), ("newmark", {**motion, "Time/Stepper": "newmark"}, (FE, PD), 1e-10),
                                              ("full kinematics, newmark", {**motion, "Models": PD, "Elasticity/Kinematics": "full",
                                                                            "Time/Stepper": "newmark"}, (PD,), 1e-10),
                                              ("full kinematics", bend, (PD,), 5e-10),
@@ -182,6 +154,4 @@ def ranks():
 
 
 if __name__ == "__main__":
-    for part in sys.argv[1:] or ["statics", "waves", "ranks"]:
-        {"statics": statics, "fine_statics": lambda: statics((4, 8, 16, 32, 64)), "waves": waves, "ranks": ranks}[part]()
-    finish()
+    run_parts(statics, waves, ranks, fine_statics=lambda: statics((4, 8, 16, 32, 64)))

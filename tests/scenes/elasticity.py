@@ -10,11 +10,9 @@ Bounds that follow from no theory are about 1.5 times the gap that was measured;
 import json
 import math
 import os
-import sys
 
-from scene_test import SOURCE_DIR, Comparison, check, check_close, check_message, finish, fitted_order, run_scene
+from scene_test import FE, PD, SOURCE_DIR, Comparison, check, check_close, check_message, fitted_order, run_parts, run_scene
 
-FEM, PD = "finite elements", "peridynamics"
 QUIET = {"Output/Fields": "none", "Solver/Tolerance": "1e-12"}
 
 
@@ -42,7 +40,7 @@ def bars():
     run = run_quietly("bar_1d.prm")
     cut = {"Peridynamics/Surface correction": "none"}
     ends = [r.probe(PD, [1], column="ux") / 5e-3 - 1 for r in (run_quietly("bar_1d.prm", cut), run_quietly("bar_1d.prm", {"Domain/Cells": "200", **cut}))]
-    table.add("1D, FEM: end displacement", run.probe(FEM, [1], column="ux"), 5e-3, relative=1e-11)
+    table.add("1D, FEM: end displacement", run.probe(FE, [1], column="ux"), 5e-3, relative=1e-11)
     table.add("1D, PD: strain in the middle", (run.probe(PD, [0.75], column="ux") - run.probe(PD, [0.25], column="ux")) / 0.5, 5e-3, relative=1e-10)
     table.add("1D, PD: stress in the middle", run.probe(PD, [0.75], column="sxx"), 1, relative=1e-10)
     table.add("1D, PD: end displacement", run.probe(PD, [1], column="ux"), 5e-3, relative=1e-10)
@@ -55,7 +53,7 @@ def bars():
         run = run_quietly(name)
         far = [2, 1, 1][:dim]
         for column, value in zip(("ux", "uy", "uz"), (0.01, -0.0015, -0.0015)[:dim]):
-            table.add(f"{dim}D, FEM: {column} at the far corner", run.probe(FEM, far, column=column), value, relative=1e-8)
+            table.add(f"{dim}D, FEM: {column} at the far corner", run.probe(FE, far, column=column), value, relative=1e-8)
         young, poisson = young_and_poisson(run, PD, dim)
         table.add(f"{dim}D, PD: Young's modulus inside", young, 200, relative=of_young)
         table.add(f"{dim}D, PD: Poisson's ratio inside", poisson, 0.3, absolute=of_poisson)
@@ -112,16 +110,16 @@ def plates():
     run = run_quietly("hole_in_tension.prm")
     # Measured: finite elements 1.0, 4.3, 2.6, 1.5 %; peridynamics 1.1, 1.3 and 1.1 % away from the
     # hole, 12 % at the second row above it. The hole's steps are a larger hole.
-    for model, bounds in ((FEM, (0.015, 0.064, 0.04, 0.023)), (PD, (0.2, 0.016, 0.018, 0.016))):
+    for model, bounds in ((FE, (0.015, 0.064, 0.04, 0.023)), (PD, (0.2, 0.016, 0.018, 0.016))):
         for row, bound in zip(run.rows(model), bounds):
             r2 = row["x"] ** 2 + row["y"] ** 2
             table.add(f"hole, {model}: sxx at y = {row['y']}", row["sxx"], 1 + 0.5 / r2 + 1.5 / r2 ** 2, relative=bound)
     balanced(table, run)
     run = run_quietly("cantilever.prm")
     beam = 40 + 1.2 * 10 / (100 / 2.6)
-    table.add("cantilever, quadratic elements: end", run.probe(FEM, (10, 0), column="uy"), beam, relative=2.8e-3)  # measured: 1.8e-3
+    table.add("cantilever, quadratic elements: end", run.probe(FE, (10, 0), column="uy"), beam, relative=2.8e-3)  # measured: 1.8e-3
     balanced(table, run)
-    linear = run_quietly("cantilever.prm", {"Models": FEM, "Finite elements/Degree": 1}).probe(FEM, (10, 0), column="uy")
+    linear = run_quietly("cantilever.prm", {"Models": FE, "Finite elements/Degree": 1}).probe(FE, (10, 0), column="uy")
     table.add("cantilever, bilinear elements: end", linear, beam, relative=0.0105)  # measured: 7.0e-3
     fine = run_quietly("cantilever.prm", {"Models": PD, "Domain/Cells": "400, 40"}).probe(PD, (10, 0), column="uy")
     # Measured: 6.2 % and, on cells of a quarter, 1.5 % too stiff.
@@ -141,8 +139,8 @@ def bore():
                                                 "Boundary conditions/Displacement": "left: -0.02, free ; right: 0.02, free ; bottom: free, 0", "Boundary conditions/Traction": "",
                                                 "Output/Probes": " ; ".join(f"0,{y:g}" for y in heights), "Output/Line": ""})
     for y in heights:
-        wanted = {model: plane.probe(model, (0, y), column="sxx") for model in (FEM, PD)}
-        for model, bound in ((FEM, 1e-8), (PD, 0.03)):  # measured: 7e-13; 0.5, 1.5 and 2.0 %
+        wanted = {model: plane.probe(model, (0, y), column="sxx") for model in (FE, PD)}
+        for model, bound in ((FE, 1e-8), (PD, 0.03)):  # measured: 7e-13; 0.5, 1.5 and 2.0 %
             table.add(f"{model}: sxx at y = {y:g}", solid.probe(model, (0, y, 0.25), column="sxx"), wanted[model], relative=bound)
         gap = bare.probe(PD, (0, y, 0.25), column="sxx") / wanted[PD] - 1
         check(gap > 0.045, f"where families end at its planes of symmetry the slice is too stiff at y = {y:g}: {gap:.3g}")  # measured: 11, 10, 6.9 %
@@ -159,7 +157,7 @@ def crack():
     # Measured: finite elements -2.4 and -1.6 %, peridynamics 1.8 and 0.3 %.
     for number, bounds in (("40, 200", (0.036, 0.027)), ("80, 400", (0.024, 0.0045))):
         run = run_quietly("crack_in_tension.prm", {"Domain/Cells": number})
-        for model, bound in zip((FEM, PD), bounds):
+        for model, bound in zip((FE, PD), bounds):
             stress = run.model(model)["boundary force"]["top"][1]
             above, below = (run.probe(model, (0, y), column="uy") for y in (1e-6, -1e-6))
             table.add(f"{number} cells, {model}: opening", above - below, 4 * stress * a / young * shape, relative=bound)
@@ -177,7 +175,7 @@ def thermal():
     run = run_quietly("bimetal.prm")
     fine = run_quietly("bimetal.prm", {"Models": PD, "Domain/Cells": "320, 40"})
     # Measured: 1.5e-6, 2.3 % and 0.94 %.
-    for what, r, model, bound in (("finite elements", run, FEM, 2.3e-6), ("peridynamics", run, PD, 0.035), ("peridynamics, 40 cells high", fine, PD, 0.0141)):
+    for what, r, model, bound in (("finite elements", run, FE, 2.3e-6), ("peridynamics", run, PD, 0.035), ("peridynamics, 40 cells high", fine, PD, 0.0141)):
         u = {round(row["x"], 6): row["uy"] for row in r.rows(model, table="line.csv")}
         table.add(f"bimetal, {what}: curvature", (u[6.0] - 2 * u[4.0] + u[2.0]) / 4, curvature, relative=bound)
     strain = -300 * (4e4 * 5e-6 + 3e4 * 2e-5) / 7e4
@@ -187,11 +185,11 @@ def thermal():
     # cells of half the size 1.5 %; 1.0 % between rigid sides.
     for more, wanted, bounds in (({}, free, (6e-5, 0.035)), ({"Domain/Cells": "360, 60"}, free, (6e-5, 0.0225)), ({"Boundary conditions/Displacement": "right: 0, free"}, held, (1e-10, 0.0155))):
         run = run_quietly("laminate.prm", more)
-        for model, bound in zip((FEM, PD), bounds):
+        for model, bound in zip((FE, PD), bounds):
             for row, value, layer in zip(run.rows(model), wanted, ("core", "face")):
                 table.add(f"laminate {more or ''}, {model}: sxx in the {layer}", row["sxx"], value, absolute=bound * max(map(abs, wanted)))
-        between = run.rows(FEM)[2]["sxx"]
-        table.add_limit(f"laminate {more or ''}, {FEM}: sxx at the interface, gap to the nearer of core and face", min(abs(between - value) for value in wanted),
+        between = run.rows(FE)[2]["sxx"]
+        table.add_limit(f"laminate {more or ''}, {FE}: sxx at the interface, gap to the nearer of core and face", min(abs(between - value) for value in wanted),
                         bounds[0] * max(map(abs, wanted)))
     balanced(table, run)  # nothing acts on the others
     table.show()
@@ -207,9 +205,9 @@ def torsion():
     # -4.5e-5 of the torque.
     for n, of_torque, of_stress, of_bonds in ((12, 2.3e-3, 1.5e-3, 0.018), (24, 5.8e-4, 3.8e-4, 7e-5)):
         run = run_quietly("torsion.prm", {"Domain/Cells": f"{n}, {n}, {n}"})
-        torque = {model: 8 * run.model(model)["strain energy"] / 0.005 for model in (FEM, PD)}
-        table.add(f"{n} cells, FEM: torque", torque[FEM], moment, relative=of_torque)
-        table.add(f"{n} cells, FEM: largest shear stress", run.probe(FEM, (0.5, 0, 0.25), column="syz"), shear, relative=of_stress)
+        torque = {model: 8 * run.model(model)["strain energy"] / 0.005 for model in (FE, PD)}
+        table.add(f"{n} cells, FEM: torque", torque[FE], moment, relative=of_torque)
+        table.add(f"{n} cells, FEM: largest shear stress", run.probe(FE, (0.5, 0, 0.25), column="syz"), shear, relative=of_stress)
         table.add(f"{n} cells, PD: torque", torque[PD], moment, relative=of_bonds)
     table.show()
 
@@ -301,7 +299,7 @@ def constraint():
     runs = {depth: run_quietly(name, {entry: depth, **cut}) for depth in ("", "0.075", "0.15")}
     for depth, run in runs.items():
         print(f"  layer of {depth or 'one row'}: {distance(run, PD):.2e}")
-        table.add_limit(f"layer '{depth}', FEM", distance(run, FEM), 1e-9)
+        table.add_limit(f"layer '{depth}', FEM", distance(run, FE), 1e-9)
         balanced(table, run)
     table.add_limit("two horizons, PD", distance(runs["0.15"], PD), 1e-11)
     table.add_limit("one horizon over one row, PD", distance(runs["0.075"], PD) / distance(runs[""], PD), 0.1)
@@ -366,8 +364,8 @@ def le_elements():
     for degree, name in ((2, "elements"), (1, "elements_bilinear")):
         run = run_row(name)
         # Quadratic: 3.777 and 2.0608e-3; bilinear: 3.751 and 2.0593e-3.
-        table.add(f"degree {degree}: von Mises at the top of the hole", run.probe(FEM, (50, 35), column="von_mises"), REFERENCE["von mises"], absolute=0.01 if degree == 2 else 0.035)
-        table.add(f"degree {degree}: u_x(100, 25)", run.probe(FEM, (100, 25), column="ux"), REFERENCE["ux"], absolute=2e-6 if degree == 2 else 2.5e-6)
+        table.add(f"degree {degree}: von Mises at the top of the hole", run.probe(FE, (50, 35), column="von_mises"), REFERENCE["von mises"], absolute=0.01 if degree == 2 else 0.035)
+        table.add(f"degree {degree}: u_x(100, 25)", run.probe(FE, (100, 25), column="ux"), REFERENCE["ux"], absolute=2e-6 if degree == 2 else 2.5e-6)
         balanced(table, run)
     table.show()
 
@@ -397,12 +395,5 @@ def le_full():
     table.show()
 
 
-def main():
-    parts = {function.__name__: function for function in (bars, surface, fine_surface, cells, constraint, plates, bore, crack, thermal, torsion, notes, ranks, le_elements, le_hole, le_full)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(bars, surface, fine_surface, cells, constraint, plates, bore, crack, thermal, torsion, notes, ranks, le_elements, le_hole, le_full)

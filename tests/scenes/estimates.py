@@ -8,11 +8,10 @@
 
 import os
 import re
-import sys
 import tempfile
 import time
 
-from scene_test import check, check_clean_error, check_message, finish, print_table, run_perideal, run_scene, Run
+from scene_test import Run, check, check_clean_error, check_message, print_table, run_parts, run_perideal, run_scene
 
 # Scene, settings that leave it short, and a lattice that is small.
 SCENES = [
@@ -89,5 +88,4 @@ def refused():
 
 
 if __name__ == "__main__":
-    {"runs": runs, "refused": refused}[sys.argv[1]]()
-    finish()
+    run_parts(runs, refused)

@@ -8,66 +8,40 @@ Bounds that follow from no theory are about 1.5 times the error that was measure
 """
 
 import math
-import sys
 
-from scene_test import Comparison, check, check_message, finish, fitted_order, run_scene
+from scene_test import COUPLED, FE, PD, Comparison, check, check_message, fitted_order, run_parts, run_scene, scene_text
 
-FEM, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 
-BEAM = """
-set Dimension = 2
-set Physics   = elasticity
-set Models    = finite elements, peridynamics
-subsection Domain
-  set Lower corner = 0, -0.5
-  set Upper corner = 4, 0.5
-end
-subsection Material
-  set Young modulus = 100
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Displacement = left: 2.3/50*y*(y^2 - 0.25), -3.6/50*y^2
-  set Traction     = right: 0, -6*(0.25 - y^2)
-end
-subsection Reference
-  set Solution = cantilever(1)
-end
-subsection Output
-  set Fields = none
-  set Probes = 2,0.25
-end
-"""
+BEAM = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = finite elements, peridynamics
+Domain/Lower corner = 0, -0.5
+Domain/Upper corner = 4, 0.5
+Material/Young modulus = 100
+Material/Poisson ratio = 0.3
+Boundary conditions/Displacement = left: 2.3/50*y*(y^2 - 0.25), -3.6/50*y^2
+Boundary conditions/Traction = right: 0, -6*(0.25 - y^2)
+Reference/Solution = cantilever(1)
+Output/Fields = none
+Output/Probes = 2,0.25
+""")
 
-WAVE = """
-set Dimension = {dim}
-set Physics   = elasticity
-set Models    = finite elements, peridynamics
-subsection Material
-  set Young modulus = 4
-  set Poisson ratio = 0.25
-end
-subsection Boundary conditions
-  set Displacement = left: {held}; right: {held}
-  set Symmetry     = {planes}
-end
-subsection Initial and source
-  set Initial displacement = 1e-3*sin(3*pi*x){zeros}
-end
-subsection Elasticity
-  set Solver = dynamics
-end
-subsection Time
-  set End time = 0.55
-end
-subsection Reference
-  set Solution = standing wave(3, 1e-3)
-end
-subsection Output
-  set Fields = none
-  set Probes = {probe}
-end
-"""
+WAVE = scene_text("""
+Dimension = {dim}
+Physics = elasticity
+Models = finite elements, peridynamics
+Material/Young modulus = 4
+Material/Poisson ratio = 0.25
+Boundary conditions/Displacement = left: {held}; right: {held}
+Boundary conditions/Symmetry = {planes}
+Initial and source/Initial displacement = 1e-3*sin(3*pi*x){zeros}
+Elasticity/Solver = dynamics
+Time/End time = 0.55
+Reference/Solution = standing wave(3, 1e-3)
+Output/Fields = none
+Output/Probes = {probe}
+""")
 
 
 def error(run, model, which="relative l2"):
@@ -88,26 +62,26 @@ def orders(what, text, lattices, models, settings=None, least=None):
 def statics():
     table = Comparison("Exact displacements of bodies at rest")
     # Quadratic elements leave what the conditions on the left side have; measured: 2.1e-7.
-    fine = run_scene(BEAM, {"Models": FEM, "Domain/Cells": "40, 10", "Finite elements/Degree": "2"})
-    table.add_limit("beam, quadratic elements: relative error", error(fine, FEM), 4e-7)
-    runs = orders("beam", BEAM, ("40, 10", "80, 20", "160, 40"), (FEM, PD), least={FEM: 1.95, PD: 1.1})  # measured: 2.00, 1.17
+    fine = run_scene(BEAM, {"Models": FE, "Domain/Cells": "40, 10", "Finite elements/Degree": "2"})
+    table.add_limit("beam, quadratic elements: relative error", error(fine, FE), 4e-7)
+    runs = orders("beam", BEAM, ("40, 10", "80, 20", "160, 40"), (FE, PD), least={FE: 1.95, PD: 1.1})  # measured: 2.00, 1.17
     exact = {c: runs[0].probe("exact", [2, 0.25], column=c) for c in ("ux", "uy", "sxx", "syy", "sxy")}
     table.add("beam: exact stress along it", exact["sxx"], 6.0, relative=1e-12)
     table.add("beam: exact shear stress", exact["sxy"], -1.125, relative=1e-12)
     table.add("beam: exact deflection", exact["uy"], -0.85725, relative=1e-12)
     # The rim of the hole in steps; peridynamics with m = 3 is 1.3 % stiffer than the material.
-    plates = orders("plate with a hole", "prm/elasticity/kirsch.prm", ("20, 20", "40, 40", "80, 80"), (FEM, PD), {"Output/Fields": "none"},
-                    least={FEM: 0.7, PD: 0.15})  # measured: 0.77, 0.17; bonds across the steps of the hole have larger errors and 0.36
+    plates = orders("plate with a hole", "prm/elasticity/kirsch.prm", ("20, 20", "40, 40", "80, 80"), (FE, PD), {"Output/Fields": "none"},
+                    least={FE: 0.7, PD: 0.15})  # measured: 0.77, 0.17; bonds across the steps of the hole have larger errors and 0.36
     table.add("plate: exact stress beside the hole", plates[0].probe("exact", [0, 0.6], column="sxx"), 1 + 0.5 * (0.25 / 0.36) + 1.5 * (0.25 / 0.36) ** 2, relative=1e-12)
-    cracks = orders("crack", "prm/elasticity/coupled_crack.prm", ("21, 21", "41, 41", "81, 81"), (FEM, COUPLED), {"Output/Fields": "none", "Cracks/Mesh": "removed"},
-                    least={FEM: 0.85, COUPLED: 0.8})  # measured: 0.90, 0.84
-    check(all(error(run, COUPLED) < 0.5 * error(run, FEM) for run in cracks), "elements beside the crack are not helped by bonds")
+    cracks = orders("crack", "prm/elasticity/coupled_crack.prm", ("21, 21", "41, 41", "81, 81"), (FE, COUPLED), {"Output/Fields": "none", "Cracks/Mesh": "removed"},
+                    least={FE: 0.85, COUPLED: 0.8})  # measured: 0.90, 0.84
+    check(all(error(run, COUPLED) < 0.5 * error(run, FE) for run in cracks), "elements beside the crack are not helped by bonds")
     # A formula for each component: uniform strain, exact in both models but for the sums over bonds.
     patch = {"Boundary conditions/Displacement": "left: 0, -0.002*y ; right: 0.04, -0.002*y ; top: 0.01*x, -0.001 ; bottom: 0.01*x, 0.001",
              "Boundary conditions/Traction": "", "Reference/Solution": "0.01*x, -0.002*y", "Domain/Cells": "40, 10", "Solver/Tolerance": "1e-13"}
     for ranks in (1, 2):
         run = run_scene(BEAM, patch, ranks=ranks)
-        for model in (FEM, PD):
+        for model in (FE, PD):
             table.add_limit(f"uniform strain, {ranks} processes, {model}", error(run, model), 1e-11)
         check(all(math.isnan(run.probe("exact", [2, 0.25], column=c)) for c in ("sxx", "von_mises")), "a formula tells stresses")
     check("error of finite elements against the exact solution" in fine.stdout, f"the closing lines tell no error: {fine.stdout}")
@@ -121,18 +95,16 @@ def waves():
     """Of order 2 in the spacing, the step of `verlet` being tied to it; at places of output on 1 and 2 processes the same."""
     table = Comparison("Standing waves")
     for dim, held, planes, zeros, probe, lattices, least in (
-            (1, "0", "", "", "0.3", ("40", "80", "160"), {FEM: 1.9, PD: 1.9}),
-            (2, "0, free", "top, bottom", ", 0", "0.3,0.2", ("20, 4", "40, 8", "80, 16"), {FEM: 1.8, PD: 1.7})):
+            (1, "0", "", "", "0.3", ("40", "80", "160"), {FE: 1.9, PD: 1.9}),
+            (2, "0, free", "top, bottom", ", 0", "0.3,0.2", ("20, 4", "40, 8", "80, 16"), {FE: 1.8, PD: 1.7})):
         text = WAVE.format(dim=dim, held=held, planes=planes, zeros=zeros, probe=probe)
         more = {} if dim == 1 else {"Domain/Upper corner": "1, 0.2", "Elasticity/Plane": "strain"}
-        orders(f"wave in {dim}D", text, lattices, (FEM, PD), more, least=least)
+        orders(f"wave in {dim}D", text, lattices, (FE, PD), more, least=least)
         one, two = (run_scene(text, {**more, "Domain/Cells": lattices[0]}, ranks=ranks) for ranks in (1, 2))
-        for model in (FEM, PD):
+        for model in (FE, PD):
             table.add(f"wave in {dim}D, {model}: error on 2 processes", error(two, model), error(one, model), relative=1e-9)
     table.show()
 
 
-PARTS = {"statics": statics, "waves": waves}
-for part in sys.argv[1:] or PARTS:
-    PARTS[part]()
-finish()
+if __name__ == "__main__":
+    run_parts(statics, waves)

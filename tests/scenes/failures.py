@@ -7,7 +7,7 @@ import math
 import os
 from collections import namedtuple
 
-from scene_test import SOURCE_DIR, TRACES, check, finish, print_table, run_scene
+from scene_test import QUIET, SOURCE_DIR, TRACES, check, finish, print_table, run_scene
 
 # Refused, or stopped: words of the message.
 REFUSED = {
@@ -181,7 +181,6 @@ WRONG = {
     "wetting_layer.prm": Wrong(["first order", "'fictitious mirror'"], last("weight", "peridynamics"), 0.84 * wetness_of_series(0.04), 0.01, wetness_of_series(0.04), 0.01),
 }
 
-QUIET = {"Output/Fields": "none"}
 DIGITS = {**QUIET, "Solver/Tolerance": "1e-12", "Time/Tolerance": "1e-8"}  # for what comments give to many of them
 
 

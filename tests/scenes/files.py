@@ -7,7 +7,6 @@ import json
 import math
 import os
 import struct
-import tempfile
 import xml.etree.ElementTree as xml
 import zlib
 
@@ -16,75 +15,45 @@ try:
 except ImportError:
     h5py = None
 
-from scene_test import check, check_close, check_less, finish, print_table, run_perideal, run_scene
+from scene_test import check, check_close, check_less, finish, print_table, run_perideal, run_scene, scene_text, temporary_folder, write_file
 
 FEM_FIELDS = ["temperature", "heat_flux"]
 PD_FIELDS = ["temperature", "heat_flux", "heat_flux_one_sided", "node_volume", "cut_fraction", "peridynamics_minus_finite_elements"]
 VECTORS = ["heat_flux", "heat_flux_one_sided"]
 
 SCENES = {
-    1: """
-set Dimension = 1
-subsection Domain
-  set Cells = 20
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1; right: 0
-end
-subsection Time
-  set End time = 0.3
-end
-subsection Output
-  set Write at = 0.1, 0.2
-  set Probes = 0.123456789012 ; 1
-  set Line = 0 ; 1 ; 5
-end
-""",
-    2: """
-set Dimension = 2
-subsection Domain
-  set Cells = 12, 10
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1; right: 0
-  set Flux = top: 0.5
-end
-subsection Cracks
-  set Segments = 0.3,0.42 ; 0.7,0.42
-end
-subsection Time
-  set End time = 0.3
-end
-subsection Output
-  set Write every = 0.1
-  set Probes = 0.123456789012,0.9 ; 1,0.5
-  set Line = 0,0.5 ; 1,0.5 ; 5
-end
-""",
-    3: """
-set Dimension = 3
-subsection Domain
-  set Cells = 6, 5, 5
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1; right: 0
-  set Convection = top: 2, 3
-end
-subsection Cracks
-  set Polygons = 0.43,0.2,0.2 ; 0.43,0.8,0.2 ; 0.43,0.8,0.8 ; 0.43,0.2,0.8
-end
-subsection Peridynamics
-  set Horizon ratio = 2
-end
-subsection Time
-  set End time = 0.3
-end
-subsection Output
-  set Write at = 0.1, 0.2
-  set Probes = 0.123456789012,0.9,0.5 ; 1,0.5,0.5
-  set Line = 0,0.5,0.5 ; 1,0.5,0.5 ; 5
-end
-"""}
+    1: scene_text("""
+Dimension = 1
+Domain/Cells = 20
+Boundary conditions/Dirichlet = left: 1; right: 0
+Time/End time = 0.3
+Output/Write at = 0.1, 0.2
+Output/Probes = 0.123456789012 ; 1
+Output/Line = 0 ; 1 ; 5
+"""),
+    2: scene_text("""
+Dimension = 2
+Domain/Cells = 12, 10
+Boundary conditions/Dirichlet = left: 1; right: 0
+Boundary conditions/Flux = top: 0.5
+Cracks/Segments = 0.3,0.42 ; 0.7,0.42
+Time/End time = 0.3
+Output/Write every = 0.1
+Output/Probes = 0.123456789012,0.9 ; 1,0.5
+Output/Line = 0,0.5 ; 1,0.5 ; 5
+"""),
+    3: scene_text("""
+Dimension = 3
+Domain/Cells = 6, 5, 5
+Boundary conditions/Dirichlet = left: 1; right: 0
+Boundary conditions/Convection = top: 2, 3
+Cracks/Polygons = 0.43,0.2,0.2 ; 0.43,0.8,0.2 ; 0.43,0.8,0.8 ; 0.43,0.2,0.8
+Peridynamics/Horizon ratio = 2
+Time/End time = 0.3
+Output/Write at = 0.1, 0.2
+Output/Probes = 0.123456789012,0.9,0.5 ; 1,0.5,0.5
+Output/Line = 0,0.5,0.5 ; 1,0.5,0.5 ; 5
+""")}
 TIMES = [0.1, 0.2, 0.3]
 
 
@@ -281,11 +250,9 @@ def balance():
 
 
 def answers():
-    folder = tempfile.mkdtemp(prefix="perideal_")
+    folder = temporary_folder()
     for dim, scene in SCENES.items():
-        path = os.path.join(folder, f"scene{dim}.prm")
-        with open(path, "w") as file:
-            file.write(scene)
+        path = write_file(f"scene{dim}.prm", scene, folder)
         results = os.path.join(folder, f"results{dim}")
         status, stdout, stderr = run_perideal(["check", path, "-s", f"Output directory={results}"])
         check(status == 0 and stderr == "", f"perideal check: {status}\n{stderr}")
@@ -296,9 +263,7 @@ def answers():
 
     status, text, _ = run_perideal(["parameters"])
     check(status == 0 and "subsection Peridynamics" in text, "perideal parameters")
-    path = os.path.join(folder, "all.prm")
-    with open(path, "w") as file:
-        file.write(text + "\nsubsection Boundary conditions\nend\n")
+    path = write_file("all.prm", text + "\nsubsection Boundary conditions\nend\n", folder)
     status, stdout, stderr = run_perideal(["check", path, "-s", "Boundary conditions/Dirichlet=left: 1"])
     check(status == 0, f"the printed manual is no valid scene: {stderr}")
     check(text == run_perideal(["parameters", "prm"])[1], "perideal parameters prm")
@@ -331,7 +296,6 @@ def answers():
     status, text, _ = run_perideal(["run", os.path.join(folder, "scene2.prm"), "-s", f"Output directory={folder}/a/b", "-s",
                                     "Domain/Cells=96, 80", "-s", "Output/Fields=none", "-s", "Time/Stepper=rk4"])
     check(status == 0 and "\r" not in text and text.count("\n") < 40, f"progress in a file:\n{text}")
-    return folder
 
 
 def unstable():
@@ -356,11 +320,11 @@ def unstable():
 def main():
     files()
     balance()
-    folder = answers()
+    answers()
     unstable()
     if h5py is None:
         print("h5py is missing: HDF5 files were not read")
-    finish(folder)
+    finish()
 
 
 if __name__ == "__main__":

@@ -14,40 +14,28 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import xml.etree.ElementTree as xml
 
-from scene_test import EXECUTABLE, MPIRUN, SOURCE_DIR, check, finish, run_perideal
+from scene_test import EXECUTABLE, MPIRUN, SOURCE_DIR, check, run_parts, run_perideal, scene_text, temporary_folder, write_file
 
-SCENE = """
-set Dimension = 2
-subsection Domain
-  set Cells = 12, 10
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1; right: 0
-end
-subsection Time
-  set End time = 0.3
-end
-subsection Output
-  set Write every = 0.1
-  set Probes = 0.1,0.9
-end
-"""
+SCENE = scene_text("""
+Dimension = 2
+Domain/Cells = 12, 10
+Boundary conditions/Dirichlet = left: 1; right: 0
+Time/End time = 0.3
+Output/Write every = 0.1
+Output/Probes = 0.1,0.9
+""")
 SLOW = {"Domain/Cells": "48, 40", "Time/Stepper": "euler", "Time/Time step": "1e-5", "Time/End time": "20", "Output/Write every": "0.002"}
 BROKEN = {"Time/Stepper": "euler", "Time/Time step": "1"}  # refused when the operators are there
 
-FOLDER = tempfile.mkdtemp(prefix="perideal_")
+FOLDER = temporary_folder()
 
 
 def scene_file(name="own.prm", text=SCENE):
-    path = os.path.join(FOLDER, name)
-    with open(path, "w") as file:
-        file.write(text)
-    return path
+    return write_file(name, text, FOLDER)
 
 
 def arguments(scene, results, settings=None):
@@ -298,11 +286,5 @@ def ends():
         check(process.returncode == 0 and process.stderr == "", f"a full TMPDIR: {process.returncode}\n{process.stderr}")
 
 
-def main():
-    for part in sys.argv[1:]:
-        {"mixing": mixing, "together": together, "ends": ends}[part]()
-    finish(FOLDER)
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(mixing, together, ends)

@@ -8,11 +8,10 @@ Bounds that follow from no theory are at most 1.6 times the gap that was measure
 """
 
 import math
-import sys
 
 from crack_tips import facets_of
 from fracture import BROKEN, DISSIPATED, history
-from scene_test import Comparison, check, check_close, check_less, check_message, finish, run_scene
+from scene_test import Comparison, check, check_less, check_message, run_parts, run_scene
 
 MODEL = "coupled"
 SCENE = "prm/fracture/following_zone.prm"
@@ -166,12 +165,5 @@ def mistakes():
         check_message(run_scene(SCENE, {**QUIET, **settings}, expect_error=True), *words)
 
 
-def main():
-    parts = {function.__name__: function for function in (static, bodies, motion, heat, ranks, mistakes)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(static, bodies, motion, heat, ranks, mistakes)

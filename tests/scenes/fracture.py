@@ -10,13 +10,10 @@ Bounds that follow from no theory are at most 1.6 times the gap that was measure
 
 import math
 import os
-import sys
-import tempfile
 
 from crack_rows import write_mesh
-from scene_test import SOURCE_DIR, Comparison, check, check_close, check_less, check_message, finish, run_scene
+from scene_test import PD, SOURCE_DIR, Comparison, check, check_close, check_less, check_message, run_parts, run_scene
 
-PD = "peridynamics"
 QUIET = {"Output/Fields": "none", "Output/Write at": ""}
 YOUNG, ENERGY = 200, 0.01
 BROKEN, DISSIPATED = "broken bonds", "energy dissipated"
@@ -164,24 +161,22 @@ def mesh():
     for line in ("  set Horizon ratio   = 4\n", "  set Lower corner = -0.5, -1\n", "  set Upper corner = 0.5, 1\n", "  set Cells        = 80, 160\n"):
         check(line in scene, f"the scene has {line.strip()}")
         scene = scene.replace(line, "")
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "plate.msh")
-        write_mesh(path, [-0.5 + i / 24 for i in range(25)], [-1 + 2 * i / 49 for i in range(50)])
-        # Free sides of lattices are completed, those of meshes are not: here both end.
-        shared = {**QUIET, "Domain/Nodes": "vertices", "Peridynamics/Horizon": "0.125", "Peridynamics/Surface correction": "none", "Solver/Tolerance": "1e-11", "Time/Time step": "0.02"}
-        box = run_scene(scene, {**shared, "Domain/Lower corner": "-0.5, -1", "Domain/Upper corner": "0.5, 1", "Domain/Cells": "24, 49",
-                               "Boundary conditions/Displacement": "top: 0, 0.015*t; bottom: 0, -0.015*t"})
-        runs = [run_scene(scene, {**shared, "Domain/Shape": "mesh file", "Domain/Mesh file": path,
-                                  "Boundary conditions/Displacement": "4: 0, 0.015*t; 3: 0, -0.015*t"}, ranks=ranks) for ranks in (1, 2)]
-        found = []
-        for run, side in ((box, "top"), (runs[0], "4"), (runs[1], "4")):
-            rows = history(run, f"force on {side} in y", BROKEN)
-            first = next(k for k, row in enumerate(rows) if row[2] > 0)
-            found.append((rows[first][0], max(row[1] for row in rows), rows[first - 1][1], rows[-1][2]))
-        for name, on_box, on_mesh, bound in zip(("time of the first break", "strength", "force before"), found[0], found[1], (1e-12, 2.1e-3, 2.2e-3)):
-            table.add(name, on_mesh / on_box, 1, absolute=bound)  # measured: 0, 1.3e-3, 1.4e-3
-        check_close(found[2], found[1], relative=1e-9, what="two processes")
-        check(found[0][3] > 500, f"the plate breaks: {found[0][3]} bonds")
+    path = write_mesh([-0.5 + i / 24 for i in range(25)], [-1 + 2 * i / 49 for i in range(50)])
+    # Free sides of lattices are completed, those of meshes are not: here both end.
+    shared = {**QUIET, "Domain/Nodes": "vertices", "Peridynamics/Horizon": "0.125", "Peridynamics/Surface correction": "none", "Solver/Tolerance": "1e-11", "Time/Time step": "0.02"}
+    box = run_scene(scene, {**shared, "Domain/Lower corner": "-0.5, -1", "Domain/Upper corner": "0.5, 1", "Domain/Cells": "24, 49",
+                           "Boundary conditions/Displacement": "top: 0, 0.015*t; bottom: 0, -0.015*t"})
+    runs = [run_scene(scene, {**shared, "Domain/Shape": "mesh file", "Domain/Mesh file": path,
+                              "Boundary conditions/Displacement": "4: 0, 0.015*t; 3: 0, -0.015*t"}, ranks=ranks) for ranks in (1, 2)]
+    found = []
+    for run, side in ((box, "top"), (runs[0], "4"), (runs[1], "4")):
+        rows = history(run, f"force on {side} in y", BROKEN)
+        first = next(k for k, row in enumerate(rows) if row[2] > 0)
+        found.append((rows[first][0], max(row[1] for row in rows), rows[first - 1][1], rows[-1][2]))
+    for name, on_box, on_mesh, bound in zip(("time of the first break", "strength", "force before"), found[0], found[1], (1e-12, 2.1e-3, 2.2e-3)):
+        table.add(name, on_mesh / on_box, 1, absolute=bound)  # measured: 0, 1.3e-3, 1.4e-3
+    check_close(found[2], found[1], relative=1e-9, what="two processes")
+    check(found[0][3] > 500, f"the plate breaks: {found[0][3]} bonds")
     table.show()
 
 
@@ -329,12 +324,6 @@ def scatter():
     print(f"strength with scatter: {found}")
 
 
-def main():
-    parts = {function.__name__: function for function in (plate, beside, cantilever, block, bend, mesh, motion, steps, symmetry, ranks, oblique, scatter, fine_plate, fine_block, fine_motion)}
-    for name in sys.argv[1:] or [name for name in parts if not name.startswith("fine")]:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(plate, beside, cantilever, block, bend, mesh, motion, steps, symmetry, ranks, oblique, scatter,
+              fine_plate=fine_plate, fine_block=fine_block, fine_motion=fine_motion)

@@ -8,17 +8,14 @@ Bounds that follow from no theory are at most 1.6 times the gap that was measure
 """
 
 import math
-import sys
 
 import crack_measures as measures
 import numpy as np
 from fracture import BROKEN, history
-from scene_test import Comparison, check, finish, run_scene
+from scene_test import BC, COUPLED, PD, Comparison, check, run_parts, run_scene
 from scenes import check_balances
 
-PD, COUPLED = "peridynamics", "coupled"
 FIELDS, NO_FIELDS = {"Output/Fields": "hdf5"}, {"Output/Fields": "none"}
-BC = "Boundary conditions/"
 
 
 def first_break(difference, strain):
@@ -202,12 +199,5 @@ def torsion():
     table.show()
 
 
-def main():
-    parts = {function.__name__: function for function in (quench, impact, space, glass, beam, eccentric, strip, torsion)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(quench, impact, space, glass, beam, eccentric, strip, torsion)

@@ -6,46 +6,25 @@
 """
 
 import math
-import os
 import sys
-import tempfile
 
 from cracked_block import Disc, Through
-from scene_test import Comparison, check, check_close, finish, run_scene
+from scene_test import COUPLED, FE, PD, Comparison, check, check_close, finish, run_scene, scene_text
 
-FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 CENTERS, VERTICES = "cell centers", "vertices"
-BLOCK = """set Dimension = 3
-set Physics   = elasticity
-subsection Domain
-  set Lower corner = -1, -1, -1
-  set Upper corner = 1, 1, 1
-end
-subsection Material
-  set Young modulus = 1
-end
-subsection Elasticity
-  set Contact = false
-end
-subsection Output
-  set Fields = none
-end
-"""
-
+SCENE = scene_text("""
+Dimension = 3
+Physics = elasticity
+Domain/Lower corner = -1, -1, -1
+Domain/Upper corner = 1, 1, 1
+Material/Young modulus = 1
+Elasticity/Contact = false
+Output/Fields = none
+""")
 
 # Of K_I, K_II, K_III and the intensity of J, over the whole intensity.
 DISC_BOUNDS = (0.03, 0.03, 0.03, 0.03)
 THROUGH_BOUNDS = (0.02, 0.02, 0.02, 0.02)
-
-
-def scene():
-    path = os.path.join(tempfile.mkdtemp(), "block.prm")
-    with open(path, "w") as file:
-        file.write(BLOCK)
-    return path
-
-
-SCENE = scene()
 
 
 def body(n, nodes, m, models=PD):

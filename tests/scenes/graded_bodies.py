@@ -5,14 +5,10 @@
     graded_bodies.py crack | loads | motion | ranks | mistakes
 """
 
-import sys
-
-from scene_test import Comparison, check, check_close, check_message, finish, run_scene
+from scene_test import COUPLED, FE, QUIET, Comparison, check, check_close, check_message, run_parts, run_scene
 
 CRACK, STRIP, GROWING, GLASS = (f"prm/elasticity/{name}.prm" for name in ("graded_crack", "impact_on_strip", "growing_crack", "thermal_stress"))
-FE, COUPLED = "finite elements", "coupled"
 INTENSITY = 1.2533141373155
-QUIET = {"Output/Fields": "none"}
 # A wave from the fine end into larger cells.
 WAVE = {"Models": FE, "Domain/Coarsening": "2", "Domain/Fine where": "2 - x", "Time/End time": "6"}
 GROWN = {"Models": f"{FE}, {COUPLED}", "Domain/Cells": "192, 32", "Cracks/Segments": "-3,-0.015625 ; -1,-0.015625"}
@@ -111,8 +107,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    parts = {part.__name__: part for part in (crack, loads, motion, ranks, mistakes)}
-    if len(sys.argv) != 2 or sys.argv[1] not in parts:
-        sys.exit(__doc__)
-    parts[sys.argv[1]]()
-    finish()
+    run_parts(crack, loads, motion, ranks, mistakes)

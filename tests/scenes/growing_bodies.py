@@ -5,12 +5,9 @@
     growing_bodies.py strip | mesh | motion | ranks | mistakes
 """
 
-import sys
-
-from scene_test import Comparison, check, check_close, check_message, finish, run_scene
+from scene_test import COUPLED, FE, PD, Comparison, check, check_close, check_message, run_parts, run_scene
 
 SCENE = "prm/elasticity/growing_crack.prm"
-FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 PER_LENGTH = 1e4 * 0.01 ** 2 / 2 / (1 - 0.3 ** 2)
 INTENSITY = (PER_LENGTH * 1e4) ** 0.5
 MOTION = {"Elasticity/Solver": "dynamics", "Elasticity/Contact": "false", "Material/Density": "1.0", "Time/Time step": "auto", "Time/End time": "0.04", "Output/Write at": "0, 0.02, 0.04",
@@ -92,5 +89,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    {"strip": strip, "mesh": mesh, "motion": motion, "ranks": ranks, "mistakes": mistakes}[sys.argv[1]]()
-    finish()
+    run_parts(strip, mesh, motion, ranks, mistakes)

@@ -9,221 +9,134 @@ a message and summary.json say of time, place and model, also where another run 
 import glob
 import math
 import os
-import sys
 import xml.etree.ElementTree as xml
 
 import h5py
 import numpy
 
-from scene_test import Run, check, check_less, finish, print_table, run_perideal, run_scene
+from scene_test import Run, check, check_less, print_table, run_parts, run_perideal, run_scene, scene_text
 
 SOON = 20  # steps after the first growth
 TOLD = "'Action = stop' in section 'Guards'"  # in notes of what would have ended the run
 
-PLATE = """
-set Models = peridynamics
-subsection Domain
-  set Cells = 20, 20
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 0
-end
-"""
+PLATE = scene_text("""
+Models = peridynamics
+Domain/Cells = 20, 20
+Boundary conditions/Dirichlet = left: 0; right: 0
+""")
 
 # The source has no value after t = 0.05.
-SOURCE_ENDS = PLATE + """
-subsection Initial and source
-  set Source = 10*sqrt(0.05 - t)
-end
-subsection Time
-  set End time = 0.2
-  set Stepper  = euler
-end
-subsection Output
-  set Write every = 0.02
-end
-"""
+SOURCE_ENDS = PLATE + scene_text("""
+Initial and source/Source = 10*sqrt(0.05 - t)
+Time/End time = 0.2
+Time/Stepper = euler
+Output/Write every = 0.02
+""")
 
 # A step of forward Euler that is stable at the start.
-WARMING = PLATE + """
-subsection Material
-  set Conductivity = 1 + 10*T
-end
-subsection Initial and source
-  set Source = 10
-end
-subsection Time
-  set End time  = 2
-  set Stepper   = euler
-  set Time step = 4e-4
-end
-subsection Output
-  set Write every = 0.004
-end
-"""
+WARMING = PLATE + scene_text("""
+Material/Conductivity = 1 + 10*T
+Initial and source/Source = 10
+Time/End time = 2
+Time/Stepper = euler
+Time/Time step = 4e-4
+Output/Write every = 0.004
+""")
 
 # A given value that becomes infinite at t = 0.05.
-VALUE_EXPLODES = """
-set Dimension = 1
-set Models    = finite elements
-subsection Domain
-  set Lower corner = 0
-  set Upper corner = 1
-  set Cells        = 40
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1/(0.05 - t); right: 0
-end
-subsection Time
-  set End time = 0.2
-end
-subsection Output
-  set Write every = 0.02
-end
-"""
+VALUE_EXPLODES = scene_text("""
+Dimension = 1
+Models = finite elements
+Domain/Lower corner = 0
+Domain/Upper corner = 1
+Domain/Cells = 40
+Boundary conditions/Dirichlet = left: 1/(0.05 - t); right: 0
+Time/End time = 0.2
+Output/Write every = 0.02
+""")
 
 # A source that begins at 0, in a body at rest.
 SLOW_START = VALUE_EXPLODES.replace("left: 1/(0.05 - t); right: 0", "left: 0").replace("End time = 0.2", "End time = 8\n  set Stepper  = crank nicolson").replace(
     "subsection Time", "subsection Initial and source\n  set Source = 1000*sin(40*t)\nend\nsubsection Time").replace("Write every = 0.02", "Write every = 2")
 
-BODY = """
-set Physics = elasticity
-set Models  = peridynamics
-subsection Material
-  set Young modulus = 100
-  set Poisson ratio = 0.3
-  set Density       = 1.0
-"""
-
+BODY = scene_text("""
+Physics = elasticity
+Models = peridynamics
+Material/Young modulus = 100
+Material/Poisson ratio = 0.3
+Material/Density = 1.0
+""")
 
 
 def held_motion(kinematics, end_time):
     """The motion of a body that is held on the left."""
-    return f"""
-subsection Boundary conditions
-  set Displacement = left: 0, 0
-end
-subsection Elasticity
-  set Solver     = dynamics
-  set Kinematics = {kinematics}
-end
-subsection Time
-  set End time = {end_time}
-end
-"""
+    return scene_text(f"""
+Boundary conditions/Displacement = left: 0, 0
+Elasticity/Solver = dynamics
+Elasticity/Kinematics = {kinematics}
+Time/End time = {end_time}
+""")
 
 
 # Half of a strip flies away from the half that is held.
-FLYING = BODY + """
-  set Fracture energy = 0.001
-end
-subsection Domain
-  set Upper corner = 2, 0.5
-  set Cells        = 32, 8
-end
-subsection Initial and source
-  set Initial velocity = if(x > 1, 2, 0), 0
-end
-""" + held_motion("linear", 15) + """
-subsection Output
-  set Write every = 1
-end
-"""
+FLYING = BODY + held_motion("linear", 15) + scene_text("""
+Material/Fracture energy = 0.001
+Domain/Upper corner = 2, 0.5
+Domain/Cells = 32, 8
+Initial and source/Initial velocity = if(x > 1, 2, 0), 0
+Output/Write every = 1
+""")
 
 # A strip is pulled until a step that was stable at the start is not any more.
-PULLED = BODY + """
-end
-subsection Domain
-  set Upper corner = 1, 0.25
-  set Cells        = 16, 4
-end
-subsection Boundary conditions
-  set Displacement = left: 0, 0; right: 2.5*(t/4)^2, 0
-end
-subsection Elasticity
-  set Solver     = dynamics
-  set Kinematics = full
-end
-subsection Peridynamics
-  set Surface correction = none
-end
-subsection Time
-  set End time  = 4
-  set Stepper   = verlet
-  set Time step = STEP
-end
-subsection Output
-  set Write every = 0.25
-end
-"""
+PULLED = BODY + scene_text("""
+Domain/Upper corner = 1, 0.25
+Domain/Cells = 16, 4
+Boundary conditions/Displacement = left: 0, 0; right: 2.5*(t/4)^2, 0
+Elasticity/Solver = dynamics
+Elasticity/Kinematics = full
+Peridynamics/Surface correction = none
+Time/End time = 4
+Time/Stepper = verlet
+Time/Time step = STEP
+Output/Write every = 0.25
+""")
 
 # Half way the traction has no value any more.
-TRACTION_ENDS = BODY + """
-end
-subsection Domain
-  set Upper corner = 1, 0.25
-  set Cells        = 16, 4
-end
-subsection Boundary conditions
-  set Displacement = left: 0, 0
-  set Traction     = right: 0.1*sqrt(1 - t), 0
-end
-subsection Elasticity
-  set Solver = dynamics
-end
-subsection Time
-  set End time = 2
-end
-subsection Output
-  set Write every = 0.25
-end
-"""
+TRACTION_ENDS = BODY + scene_text("""
+Domain/Upper corner = 1, 0.25
+Domain/Cells = 16, 4
+Boundary conditions/Displacement = left: 0, 0
+Boundary conditions/Traction = right: 0.1*sqrt(1 - t), 0
+Elasticity/Solver = dynamics
+Time/End time = 2
+Output/Write every = 0.25
+""")
 
 # A plate that holds less heat the warmer it is: at the same conductivity it becomes faster.
 LESS_CAPACITY = WARMING.replace("Conductivity = 1 + 10*T", "Heat capacity = 1 - 0.9*T").replace("Time step = 4e-4", "Time step = 8e-4")
 
 
 # A displacement that has no value after half of the load steps.
-PULL_ENDS = BODY.replace("Models  = peridynamics", "Models  = finite elements, peridynamics") + """
-end
-subsection Domain
-  set Cells = 20, 20
-end
-subsection Boundary conditions
-  set Displacement = left: 0, 0; right: sqrt(0.5 - t), 0
-end
-subsection Time
-  set End time  = 1
-  set Time step = 0.1
-end
-"""
+PULL_ENDS = BODY.replace("peridynamics", "finite elements, peridynamics") + scene_text("""
+Domain/Cells = 20, 20
+Boundary conditions/Displacement = left: 0, 0; right: sqrt(0.5 - t), 0
+Time/End time = 1
+Time/Time step = 0.1
+""")
 
 # What conducts less the warmer it is, and nothing at 0.5, which the left side has at t = 0.5.
-CONDUCTS_NO_MORE = PLATE.replace("left: 0;", "left: t;") + """
-subsection Material
-  set Conductivity = 1 - 2*T
-end
-subsection Time
-  set End time = 2
-end
-"""
+CONDUCTS_NO_MORE = PLATE.replace("left: 0;", "left: t;") + scene_text("""
+Material/Conductivity = 1 - 2*T
+Time/End time = 2
+""")
 
-STEADY = PLATE.replace("left: 0;", "left: 1;").replace("Models = peridynamics", "Models = finite elements, peridynamics") + """
-subsection Time
-  set Steady = true
-end
-"""
+STEADY = PLATE.replace("left: 0;", "left: 1;").replace("peridynamics", "finite elements, peridynamics") + scene_text("Time/Steady = true")
 
 # Pushed down so fast that it folds.
-FOLDED = BODY + """
-end
-subsection Domain
-  set Cells = 20, 20
-end
-subsection Initial and source
-  set Body force = 0, -50*if(t < 0.2, 1, 0)
-end
-""" + held_motion("full", 1)
+FOLDED = BODY + held_motion("full", 1) + scene_text("""
+Domain/Cells = 20, 20
+Initial and source/Body force = 0, -50*if(t < 0.2, 1, 0)
+""")
 
 # The support jumps by a hundredth of the body.
 JUMPING = FOLDED.replace("set Body force = 0, -50*if(t < 0.2, 1, 0)", "").replace("left: 0, 0", "left: if(t < 0.3, 0, 0.01), 0")
@@ -428,11 +341,5 @@ def share():
     print_table("What guards take", ("run", "steps", "time stepping, s", "guards, s", "share"), rows)
 
 
-def main():
-    for part in sys.argv[1:] or ("stopped", "actions", "share", "told"):
-        {"stopped": stopped, "actions": actions, "share": share, "told": told}[part]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(stopped, actions, share, told)

@@ -11,9 +11,8 @@
 """
 
 import math
-import sys
 
-from scene_test import Comparison, check, finish, observed_orders, print_table, run_scene
+from scene_test import Comparison, check, observed_orders, print_table, run_parts, run_scene
 
 SCENES = {1: "prm/heat/harmonic_1d.prm", 2: "prm/heat/harmonic_2d.prm", 3: "prm/heat/harmonic_3d.prm"}
 
@@ -170,12 +169,5 @@ def fine_space():
     space(fine=True)
 
 
-def main():
-    parts = {"exact": exact, "variants": variants, "time": time, "elements": elements, "space": space, "fine_space": fine_space}
-    for name in sys.argv[1:] or [name for name in parts if name != "space"]:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(exact, variants, time, elements, fine_space, space=space)

@@ -9,50 +9,34 @@
 """
 
 import math
-import os
-import sys
-import tempfile
 
 import numpy as np
 
-from scene_test import Comparison, check, finish, run_scene
+from scene_test import PD, Comparison, check, run_parts, run_scene, scene_text, write_file
+from scene_texts import mesh_text
 
-PD = "peridynamics"
 ALL = "finite elements, peridynamics, coupled"
 
-WALL = """
-set Dimension = {dim}
-set Physics = {physics}
-set Models = {models}
-subsection Domain
-  set Cells = {cells}
-end
-subsection Material
-{material}
-end
-subsection Boundary conditions
-  set Dirichlet = {sides}
-end
-subsection Coupling
-  set Zone = 0.3 - abs(x - 0.5)
-end
-{more}
-"""
-
-STEADY = "subsection Time\n  set Steady = true\nend\n"
+STEADY = "Time/Steady = true"
 
 
 def wall(material, cells="20, 20", dim=2, models=PD, sides="left: 0; right: 1", more=STEADY, physics="heat"):
     """A body of unit length whose cells are squares or cubes."""
     n = [int(word) for word in cells.split(",")]
-    more = "subsection Domain\n  set Upper corner = " + ", ".join(str(k / n[0]) for k in n) + "\nend\n" + more
-    return WALL.format(dim=dim, physics=physics, models=models, cells=cells, sides=sides, more=more,
-                       material="\n".join(f"  set {line}" for line in material))
+    return scene_text(f"""
+Dimension = {dim}
+Physics = {physics}
+Models = {models}
+Domain/Cells = {cells}
+Domain/Upper corner = {", ".join(str(k / n[0]) for k in n)}
+Boundary conditions/Dirichlet = {sides}
+Coupling/Zone = 0.3 - abs(x - 0.5)
+""" + "".join(f"Material/{line}\n" for line in material) + more)
 
 
 def transient(stepper, end, step="", probes="0.25 ; 0.5 ; 0.75", initial="0"):
-    return (f"subsection Time\n  set Stepper = {stepper}\n  set End time = {end}\n" + (f"  set Time step = {step}\n" if step else "") +
-            f"end\nsubsection Initial and source\n  set Initial value = {initial}\nend\nsubsection Output\n  set Probes = {probes}\nend\n")
+    return (f"Time/Stepper = {stepper}\nTime/End time = {end}\n" + (f"Time/Time step = {step}\n" if step else "") +
+            f"Initial and source/Initial value = {initial}\nOutput/Probes = {probes}\n")
 
 
 def finite_volumes(conductivity, storage, end, left=0.0, right=1.0, cells=200, saturated=None):
@@ -78,23 +62,18 @@ def finite_volumes(conductivity, storage, end, left=0.0, right=1.0, cells=200, s
     return [float(np.interp(p, x, u)) for p in (0.25, 0.5, 0.75)]
 
 
-def distorted_mesh(path, n=16):
-    """A square of quadrilaterals whose inner vertices are out of place."""
+def distorted_mesh(n=16):
+    """The file of a square of quadrilaterals whose inner vertices are out of place."""
     nodes = []
     for j in range(n + 1):
         for i in range(n + 1):
             inside = 0 < i < n and 0 < j < n
             shift = 0.15 / n if inside else 0.0
-            nodes.append((i / n + shift * math.sin(3 * i + 5 * j), j / n + shift * math.cos(4 * i + 2 * j)))
+            nodes.append(f"{i / n + shift * math.sin(3 * i + 5 * j)!r} {j / n + shift * math.cos(4 * i + 2 * j)!r}")
     at = lambda i, j: j * (n + 1) + i + 1
     elements = [f"3 2 9 9 {at(i, j)} {at(i + 1, j)} {at(i + 1, j + 1)} {at(i, j + 1)}" for j in range(n) for i in range(n)]
     elements += [f"1 2 1 1 {at(0, j)} {at(0, j + 1)}" for j in range(n)] + [f"1 2 2 2 {at(n, j)} {at(n, j + 1)}" for j in range(n)]
-    with open(path, "w") as file:
-        file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + f"{len(nodes)}\n")
-        file.writelines(f"{k + 1} {x!r} {y!r} 0\n" for k, (x, y) in enumerate(nodes))
-        file.write(f"$EndNodes\n$Elements\n{len(elements)}\n")
-        file.writelines(f"{k + 1} {e}\n" for k, e in enumerate(elements))
-        file.write("$EndElements\n")
+    return write_file("square.msh", mesh_text(nodes, elements))
 
 
 def flow(run, model=PD, side="right"):
@@ -113,14 +92,11 @@ def material():
         run = run_scene(wall([f"Conductivity = 1 + {b}*T"], cells, models=ALL), ranks=ranks)
         for model in run.summary["models"]:
             table.add(f"1 + {b} T, {model}", run.model(model)["effective conductivity"], 1 + b / 2, relative=2e-3)
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "square.msh")
-        distorted_mesh(path)
-        on_mesh = {"Domain/Cells": "1, 1", "Domain/Shape": "mesh file", "Domain/Mesh file": path, "Peridynamics/Horizon": "0.19",
-                   "Boundary conditions/Dirichlet": "1: 0; 2: 1"}
-        for ranks in (1, 2):
-            run = run_scene(wall(["Conductivity = 1 + 4*T"]), on_mesh, ranks=ranks)
-            table.add(f"1 + 4 T, mesh from a file, {ranks} processes", flow(run, side="2"), 3, relative=5e-3)
+    on_mesh = {"Domain/Cells": "1, 1", "Domain/Shape": "mesh file", "Domain/Mesh file": distorted_mesh(), "Peridynamics/Horizon": "0.19",
+               "Boundary conditions/Dirichlet": "1: 0; 2: 1"}
+    for ranks in (1, 2):
+        run = run_scene(wall(["Conductivity = 1 + 4*T"]), on_mesh, ranks=ranks)
+        table.add(f"1 + 4 T, mesh from a file, {ranks} processes", flow(run, side="2"), 3, relative=5e-3)
     # Transients.
     one = lambda x, u: np.ones_like(u)
     for title, lines, k, c in (("conductivity", ["Conductivity = 1 + 2*T"], lambda x, u: 1 + 2 * u, one),
@@ -150,13 +126,10 @@ def fall_back():
 
 def moisture():
     table = Comparison("Two layers of saturated concentrations 10 and 1, D = 1 in both")
-    layers = "  subsection Phases\n    set Regions = wet: 0.5 - x\n    set Saturated concentration = wet: 10\n{}  end"
+    layers = ["Phases/Regions = wet: 0.5 - x", "Phases/Saturated concentration = wet: 10"]
     for models, dim, cells in ((ALL, 2, "20, 6"), (PD, 1, "20")):
-        for lines, more, expected in ((["Conductivity = 1", layers.format("")], "", 0.5), (["Diffusivity = 1", layers.format("")], "", 10 / 11),
-                                      (["Diffusivity = 5", layers.format("    set Diffusivity = wet: 1\n")], "", 10 / 15)):
-            text = wall([], cells, dim, models, "left: 1; right: 0", STEADY + f"subsection Output\n  set Probes = {'0.5' if dim == 1 else '0.5, 0'}\nend\n", "moisture")
-            run = run_scene(text.replace("subsection Material\n", "subsection Material\n" + "\n".join(
-                line if "subsection" in line else f"  set {line}" for line in lines)))
+        for lines, expected in ((["Conductivity = 1"], 0.5), (["Diffusivity = 1"], 10 / 11), (["Diffusivity = 5", "Phases/Diffusivity = wet: 1"], 10 / 15)):
+            run = run_scene(wall(lines + layers, cells, dim, models, "left: 1; right: 0", STEADY, "moisture"), {"Output/Probes": "0.5" if dim == 1 else "0.5, 0"})
             for model in run.summary["models"]:
                 place = (0.5,) if dim == 1 else (0.5, 0)
                 rows = run.rows(model, place)
@@ -164,8 +137,7 @@ def moisture():
             check(("'Diffusivity'" in run.stdout + run.stderr) == lines[0].startswith("Conductivity"), f"{lines[0]}: the note says what is continuous")
     end = 0.1
     exact = finite_volumes(lambda x, u: np.where(x < 0.5, 10.0, 1.0), lambda x, u: np.where(x < 0.5, 10.0, 1.0), end, left=1.0, right=0.0, cells=100)
-    text = wall([], "40", 1, PD, "left: 1; right: 0", transient("auto", end), "moisture")
-    run = run_scene(text.replace("subsection Material\n", "subsection Material\n  set Diffusivity = 1\n" + layers.format("")))
+    run = run_scene(wall(["Diffusivity = 1", *layers], "40", 1, PD, "left: 1; right: 0", transient("auto", end), "moisture"))
     for x, value in zip((0.25, 0.5, 0.75), exact):
         table.add(f"transient, x = {x}", run.probe(PD, (x,), time=end), value, absolute=4e-3)
     check(run.summary["moisture counts"] == "mass", "with Diffusivity flows and amounts are masses")
@@ -174,7 +146,7 @@ def moisture():
 
 def steady():
     for end, told in (("0.01", False), ("2", True)):
-        run = run_scene(wall(["Conductivity = 1"], "20", 1, "finite elements, peridynamics", more=f"subsection Time\n  set End time = {end}\nend\n"))
+        run = run_scene(wall(["Conductivity = 1"], "20", 1, "finite elements, peridynamics", more=f"Time/End time = {end}"))
         for model in run.summary["models"]:
             found = run.model(model).get("effective conductivity")
             check((found is not None) == told, f"t = {end}, {model}: effective conductivity {found}")
@@ -183,7 +155,4 @@ def steady():
 
 
 if __name__ == "__main__":
-    parts = {"material": material, "fall_back": fall_back, "moisture": moisture, "steady": steady}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
+    run_parts(material, fall_back, moisture, steady)

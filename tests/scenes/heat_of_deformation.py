@@ -5,58 +5,35 @@
     heat_of_deformation.py adiabatic | relaxing | tearing | ranks | mistakes
 """
 
-import math
-import sys
+from scene_test import COUPLED, FE, PD, QUIET, Comparison, check, check_close, check_less, check_message, run_parts, run_scene, scene_text
 
-from scene_test import Comparison, check, check_close, check_less, check_message, finish, run_scene
-
-FEM, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 SCENE = "prm/elasticity/heat_of_deformation.prm"
-QUIET = {"Output/Fields": "none"}
 
 # All sides move outwards: the same strain everywhere, in all directions of the body. 9 K alpha^2
 # T0/(rho c) is 0.34: much more than in metals.
-BODY = """
-set Dimension = 2
-set Physics   = elasticity
-set Models    = finite elements, peridynamics, coupled
-subsection Domain
-  set Upper corner = 1, 1
-  set Cells        = 8, 8
-end
-subsection Material
-  set Young modulus     = 2
-  set Poisson ratio     = 0.3
-  set Thermal expansion = 0.01
-  set Conductivity      = 0.1
-  set Density           = 2
-  set Heat capacity     = 1
-end
-subsection Initial and source
-  set Initial value = 20
-end
-subsection Boundary conditions
-  set Displacement = left: 0, free; right: 1e-3*t, free; bottom: free, 0; top: free, 1e-3*t
-end
-subsection Elasticity
-  set Temperature change    = computed
-  set Reference temperature = 20
-  set Heat of deformation   = true
-  set Absolute zero         = -280
-end
-subsection Coupling
-  set Zone = 0.3 - abs(x - 0.5)
-end
-subsection Time
-  set Time step = 0.5
-end
-subsection Solver
-  set Tolerance = 1e-12
-end
-subsection Output
-  set Probes = 0.5,0.5 ; 1,1 ; 0.25,0
-end
-"""
+BODY = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = finite elements, peridynamics, coupled
+Domain/Upper corner = 1, 1
+Domain/Cells = 8, 8
+Material/Young modulus = 2
+Material/Poisson ratio = 0.3
+Material/Thermal expansion = 0.01
+Material/Conductivity = 0.1
+Material/Density = 2
+Material/Heat capacity = 1
+Initial and source/Initial value = 20
+Boundary conditions/Displacement = left: 0, free; right: 1e-3*t, free; bottom: free, 0; top: free, 1e-3*t
+Elasticity/Temperature change = computed
+Elasticity/Reference temperature = 20
+Elasticity/Heat of deformation = true
+Elasticity/Absolute zero = -280
+Coupling/Zone = 0.3 - abs(x - 0.5)
+Time/Time step = 0.5
+Solver/Tolerance = 1e-12
+Output/Probes = 0.5,0.5 ; 1,1 ; 0.25,0
+""")
 YOUNG, POISSON, ALPHA, ABSOLUTE, STORAGE, STRAIN = 2, 0.3, 0.01, 300, 2, 1e-3
 BULK = YOUNG / (3 * (1 - 2 * POISSON))
 BETA = 3 * BULK * ALPHA
@@ -169,7 +146,7 @@ def relaxing():
     modulus, beta = bulk + 4 / 3 * 70e9 / 2.66, 3 * bulk * 23e-6
     warmer = 293.15 * beta * 1e-3 / (2700 * 900)
     runs = [run_scene(SCENE, {**QUIET, "Domain/Cells": "12, 12", "Time/Time step": str(step)}) for step in (0.1, 0.05)]
-    for model in (FEM, PD, COUPLED):
+    for model in (FE, PD, COUPLED):
         table.add(f"{model}: T, insulated", insulated.probe(model, (0.005, 0.005), column="temperature") - 20, warmer, relative=1e-7)
         force = [-run.total("force on right in x", model) for run in (insulated, isothermal)]
         table.add(f"{model}: isothermal force", force[1], modulus * 1e-3 * 0.01, relative=FORCE[model])
@@ -191,9 +168,9 @@ def relaxing():
 
 HEAT_LOST = 1e-5  # the tolerance in time; measured with twice the steps: 4e-6
 # Measured: peridynamics 4.0e-3 and 1.0e-4, its modulus at m = 3.
-FORCE = {FEM: 1e-8, PD: 6e-3, COUPLED: 1e-8}
-RATIO = {FEM: 1e-8, PD: 1.5e-4, COUPLED: 1e-8}
-STEPS = {FEM: (2.2e-2, 7.4e-4), PD: (2.2e-2, 7.4e-4), COUPLED: (2.2e-2, 7.4e-4)}  # 1.46e-2, 4.9e-4: of first order in the step
+FORCE = {FE: 1e-8, PD: 6e-3, COUPLED: 1e-8}
+RATIO = {FE: 1e-8, PD: 1.5e-4, COUPLED: 1e-8}
+STEPS = {FE: (2.2e-2, 7.4e-4), PD: (2.2e-2, 7.4e-4), COUPLED: (2.2e-2, 7.4e-4)}  # 1.46e-2, 4.9e-4: of first order in the step
 
 
 def tearing():
@@ -244,17 +221,12 @@ def mistakes():
                            "Boundary conditions/Dirichlet": "left: 20"}, name, "Steady"),
                          ({"Elasticity/Temperature change": "1", "Elasticity/Reference temperature": "0", "Initial and source/Initial value": "0"}, name, "computed"),
                          ({"Material/Heat capacity": "1 + T"}, name, "Heat capacity"),
-                         ({"Finite elements/Capacity": "consistent", "Models": FEM}, name, "lumped"),
+                         ({"Finite elements/Capacity": "consistent", "Models": FE}, name, "lumped"),
                          ({"Material/Heat capacity": "1e-6", "Elasticity/Plane": "strain"}, name, "unit of energy"),
                          ({"Material/Poisson ratio": "0.5"}, name, "Poisson ratio"),
                          ({"Physics": "electricity", "Boundary conditions/Displacement": ""}, "Physics")):
         check_message(run_scene(BODY, {**QUIET, **more}, expect_error=True), *words)
 
 
-def main():
-    for part in sys.argv[1:]:
-        {"adiabatic": adiabatic, "relaxing": relaxing, "tearing": tearing, "ranks": ranks, "mistakes": mistakes}[part]()
-    finish()
-
-
-main()
+if __name__ == "__main__":
+    run_parts(adiabatic, relaxing, tearing, ranks, mistakes)

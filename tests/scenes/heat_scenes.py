@@ -7,12 +7,9 @@
 Bounds that follow from no theory are at most 1.5 times the gap that was measured; the comment beside them says which.
 """
 
-import sys
-
 import insulated_crack
-from scene_test import Comparison, check, check_close, finish, observed_orders, print_table, relative_difference, run_scene
+from scene_test import QUIET, Comparison, check, check_close, observed_orders, print_table, run_parts, run_scene
 
-QUIET = {"Output/Fields": "none"}
 STEADY = {"Time/Steady": "true", "Output/Write at": "", "Solver/Tolerance": "1e-12"}
 
 
@@ -307,14 +304,6 @@ def narrow_layer():
         check_close(orders[-1], 2, absolute=0.08, what=f"narrow layer, {model}: order of {errors}")  # measured: 1.994, 1.948
 
 
-def main():
-    parts = {function.__name__: function for function in (layers, composite, harmonics, varying_conductivity, plate_with_hole, convection, gmsh_plate,
-                                                          block_with_crack, example_3, bars_2010, closing_crack,
-                                                          temperature_dependent, narrow_layer)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(layers, composite, harmonics, varying_conductivity, plate_with_hole, convection, gmsh_plate,
+              block_with_crack, example_3, bars_2010, closing_crack, temperature_dependent, narrow_layer)

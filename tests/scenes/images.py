@@ -11,16 +11,14 @@ import os
 import struct
 import subprocess
 import sys
-import tempfile
 import zlib
 
 import h5py
 
-from scene_test import (SOURCE_DIR, Comparison, check, check_close, check_less, check_message, finish, print_table,
-                        run_scene)
+from scene_test import (QUIET, SOURCE_DIR, Comparison, check, check_close, check_message, print_table, run_parts, run_scene, scene_text,
+                        temporary_folder, write_file)
 
-FOLDER = tempfile.mkdtemp(prefix="perideal_images_")
-QUIET = {"Output/Fields": "none"}
+FOLDER = temporary_folder()
 PHASES = ("silver", "bi2212")
 
 # Gaps between peridynamics and finite elements; measured at most 1.9 %, 3.8 % and 4.3 %.
@@ -32,10 +30,7 @@ BALANCE = 1e-8
 
 def write_pgm(name, rows):
     """A picture of digits, each ten times as grey."""
-    path = os.path.join(FOLDER, name)
-    with open(path, "w") as file:
-        file.write(f"P2 {len(rows[0])} {len(rows)} 255\n" + "\n".join(" ".join(str(10 * int(c)) for c in row) for row in rows))
-    return path
+    return write_file(name, f"P2 {len(rows[0])} {len(rows)} 255\n" + "\n".join(" ".join(str(10 * int(c)) for c in row) for row in rows), FOLDER)
 
 
 def read_png(path):
@@ -195,21 +190,15 @@ def cooling():
 
 
 LADDER = ["9999999999", "9559955599", "9559055599", "9999999999"]
-SMALL = """
-set Dimension = 2
-subsection Domain
-  set Shape        = image
-  set Image        = %s
-  set Image colors = matrix: 90 ; fibre: 50 ; void: 0
-  set Pixel size   = 0.1
-end
-subsection Peridynamics
-  set Boundary treatment = none
-end
-subsection Output
-  set Fields = none
-end
-"""
+SMALL = scene_text("""
+Dimension = 2
+Domain/Shape = image
+Domain/Image = %s
+Domain/Image colors = matrix: 90 ; fibre: 50 ; void: 0
+Domain/Pixel size = 0.1
+Peridynamics/Boundary treatment = none
+Output/Fields = none
+""")
 ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "10", "Material/Poisson ratio": "0.25",
            "Boundary conditions/Displacement": "left: 0, 0 ; right: 0.01, 0"}
 HEAT = {"Time/Steady": "true", "Boundary conditions/Dirichlet": "left: 0 ; right: 1"}
@@ -375,9 +364,7 @@ def mistakes():
     broken = os.path.join(FOLDER, "broken.png")
     with open(os.path.join(SOURCE_DIR, "prm/papers/le_2014/images/longitudinal.png"), "rb") as source, open(broken, "wb") as target:
         target.write(source.read()[:200])
-    words = os.path.join(FOLDER, "words.png")
-    with open(words, "w") as file:
-        file.write("this is no picture")
+    words = write_file("words.png", "this is no picture", FOLDER)
     cases = [
         ("missing", {"Domain/Image": "no_such.png"}, ["'Image' in section 'Domain'", "there is no file 'no_such.png'"]),
         ("cut short", {"Domain/Image": broken}, ["'Image' in section 'Domain'", "cut short"]),
@@ -410,6 +397,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    for part in sys.argv[1:] or ["files", "heat", "islands", "layers", "mistakes", "kinds", "trends", "models", "cooling"]:
-        globals()[part]()
-    finish(FOLDER)
+    run_parts(files, heat, islands, layers, mistakes, kinds, trends, models, cooling, all_trends=all_trends)

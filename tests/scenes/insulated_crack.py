@@ -10,9 +10,8 @@ of an independent program (tests/reference) with the same rule: nodes on the cra
 """
 
 import math
-import sys
 
-from scene_test import check, check_close, check_less, finish, observed_orders, print_table, run_scene
+from scene_test import check, check_close, check_less, observed_orders, print_table, run_parts, run_scene
 
 PROBES = [(0, 0.1), (0, -0.1), (0.25, 0.05), (0.6, 0), (0.5, 0.2)]
 STEADY = [46.7486, -46.7486, 40.1230, 0.0, 32.3429]
@@ -247,13 +246,5 @@ def conducting():
             check_less(error, plain + 0.05, what + ", against that without scaling")
 
 
-def main():
-    parts = {"finite_elements": finite_elements, "peridynamics": peridynamics, "pairs": pairs,
-             "conducting": conducting, "fine": lambda: peridynamics((60, 120, 240, 480))}
-    for name in sys.argv[1:] or ("finite_elements", "peridynamics", "pairs"):
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(finite_elements, peridynamics, pairs, conducting=conducting, fine=lambda: peridynamics((60, 120, 240, 480)))

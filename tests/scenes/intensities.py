@@ -9,24 +9,19 @@
 
 import math
 import os
-import sys
 
 import h5py
 import numpy as np
 
-from scene_test import Comparison, check_close, finish, run_scene
+from scene_test import BC, COUPLED, FE, PD, Comparison, check_close, run_parts, run_scene, scene_text
 from scene_texts import PULLED_STRIP
 
-FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
-BC = "Boundary conditions/"
 NU = 0.3
 
-PLATE = PULLED_STRIP + """
-subsection Peridynamics
-  set Horizon ratio = 3
-  set Surface correction = auto
-end
-"""
+PLATE = PULLED_STRIP + scene_text("""
+Peridynamics/Horizon ratio = 3
+Peridynamics/Surface correction = auto
+""")
 
 
 class Specimen:
@@ -158,27 +153,17 @@ SPECIMENS = [
              lambda n, odd: f"{5 * n // 4}, {6 * n // 5 + odd}"),
 ]
 
-ROUND = """
-set Dimension = 3
-set Physics = elasticity
-subsection Domain
-  set Lower corner = 0, 0, -1
-  set Upper corner = 1, 1, 1
-end
-subsection Material
-  set Young modulus = 200
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Symmetry = left, bottom
-end
-subsection Cracks
-  set Polygons = disc: 0,0,0, 0,0,1, 0.5
-end
-subsection Peridynamics
-  set Horizon ratio = 3
-end
-"""
+ROUND = scene_text("""
+Dimension = 3
+Physics = elasticity
+Domain/Lower corner = 0, 0, -1
+Domain/Upper corner = 1, 1, 1
+Material/Young modulus = 200
+Material/Poisson ratio = 0.3
+Boundary conditions/Symmetry = left, bottom
+Cracks/Polygons = disc: 0,0,0, 0,0,1, 0.5
+Peridynamics/Horizon ratio = 3
+""")
 RADIUS = 0.5
 
 
@@ -263,5 +248,4 @@ def table():
 
 
 if __name__ == "__main__":
-    {"part": part, "table": table}[sys.argv[1]]()
-    finish()
+    run_parts(part, table=table)

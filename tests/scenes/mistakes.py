@@ -13,9 +13,8 @@ import json
 import os
 import re
 import sys
-import tempfile
 
-from scene_test import check, finish, print_table, run_perideal, run_scene
+from scene_test import check, finish, print_table, run_perideal, run_scene, temporary_folder, write_file
 from scene_texts import FOUR_CELLS, SQUARE_MESH
 
 SCENE = """
@@ -54,16 +53,9 @@ SCATTER = {"Material/Weibull modulus": "10", "Material/Strength seed": "1"}
 FOLLOWING = {"Models": "coupled", "Coupling/Zone": "follow"}
 
 
-def write(folder, name, text):
-    path = os.path.join(folder, name)
-    with open(path, "w") as file:
-        file.write(text)
-    return path
-
-
 def mesh_scene(folder, name, text, more=()):
     """Overrides for a scene on a mesh file with this text."""
-    path = write(folder, name, text)
+    path = write_file(name, text, folder)
     return {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Peridynamics/Horizon": "0.8",
             "Boundary conditions/Dirichlet": "3: 0; 4: 1", "Domain/Lower corner": "0, 0", **dict(more)}
 
@@ -82,7 +74,7 @@ def scene_mistakes(folder):
     """(name, overrides or text of a scene, words of the message)."""
     whole = SQUARE_MESH.format(names="", n=8, cells=FOUR_CELLS)
     triangles = SQUARE_MESH.format(names="", n=5, cells="5 2 2 7 7 1 2 5")
-    file_of_directory = write(folder, "a_file", "text")
+    file_of_directory = write_file("a_file", "text", folder)
     changed = [
         # names
         ("unknown entry", {"Material/Conductivty": "2"}, ["Conductivty", "'Material'", "Did you mean 'Conductivity'?"]),
@@ -471,8 +463,8 @@ def judge(name, status, stdout, stderr, words, results, ranks):
 
 
 def main():
-    folder = tempfile.mkdtemp(prefix="perideal_")
-    scene = write(folder, "scene.prm", SCENE)
+    folder = temporary_folder()
+    scene = write_file("scene.prm", SCENE, folder)
     changed, late, texts = scene_mistakes(folder)
     only = sys.argv[1] if len(sys.argv) > 1 else ""
     rows = []
@@ -494,19 +486,19 @@ def main():
     for number, (name, overrides, words) in enumerate(changed + late):
         if "Domain/Node spacing" in overrides:
             overrides = {entry: value for entry, value in overrides.items() if entry != "Domain/Cells"}
-            scene_here = write(folder, "no_cells.prm", SCENE.replace("set Cells        = 12, 12", ""))
+            scene_here = write_file("no_cells.prm", SCENE.replace("set Cells        = 12, 12", ""), folder)
         else:
             scene_here = scene
         for ranks in (2,) if name == "too few cells" else (1, 2):
             attempt_scene(name, scene_here, overrides, words, ranks, (number + 16 * ranks) % 32 == 0)
     for name, text, words in texts:
-        attempt(name, ["run", write(folder, "text.prm", text)], words, 1)  # messages that begin with the file's name and line
+        attempt(name, ["run", write_file("text.prm", text, folder)], words, 1)  # messages that begin with the file's name and line
     for number, (name, arguments, words) in enumerate(COMMANDS):
         arguments = [scene if word == "SCENE" else word for word in arguments]
         for ranks in (1, 2) if number % 3 == 0 else (1,):
             attempt(name, arguments, words, ranks)
     print_table("Mistakes and what is said about them", ("mistake", "ranks", "message (first 150 characters)"), rows)
-    finish(folder)
+    finish()
 
 
 if __name__ == "__main__":

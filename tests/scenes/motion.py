@@ -5,33 +5,21 @@
     motion.py kept | stopped | ranks | supplied | refused
 """
 
-import math
-import sys
+from scene_test import PD, Comparison, check, check_close, check_message, run_parts, run_scene, scene_text
 
-from scene_test import Comparison, check, check_close, check_message, finish, run_scene
-
-PD = "peridynamics"
-BODY = """
-set Dimension = 2
-set Physics = elasticity
-set Models = peridynamics
-subsection Domain
-  set Cells = 24, 24
-end
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.25
-  set Density = 1
-end
-subsection Elasticity
-  set Solver = dynamics
-  set Kinematics = full
-end
-subsection Output
-  set Write every = 1
-  set Fields = none
-end
-"""
+BODY = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = peridynamics
+Domain/Cells = 24, 24
+Material/Young modulus = 1
+Material/Poisson ratio = 0.25
+Material/Density = 1
+Elasticity/Solver = dynamics
+Elasticity/Kinematics = full
+Output/Write every = 1
+Output/Fields = none
+""")
 HELD = {"Boundary conditions/Displacement": "left: 0, 0"}
 
 
@@ -148,12 +136,5 @@ def refused():
         check_message(run, "'Density' in section 'Material'", "at (0, 0)", "positive density everywhere")
 
 
-def main():
-    parts = {function.__name__: function for function in (kept, ramps, stopped, ranks, supplied, refused)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(kept, ramps, stopped, ranks, supplied, refused)

@@ -16,14 +16,12 @@ import sys
 import numpy as np
 from PIL import Image
 
-from scene_test import SOURCE_DIR, Comparison, check, finish, print_table, run_scene
+from scene_test import FE, PD, QUIET, SOURCE_DIR, Comparison, check, print_table, run_parts, run_scene
 
 sys.path.insert(0, os.path.join(SOURCE_DIR, "doc", "reproduce"))
 import closed_forms as exact  # noqa: E402
 
-FEM, PD = "finite elements", "peridynamics"
 SCENE = "prm/papers/{}"
-QUIET = {"Output/Fields": "none"}
 AUTO = {"Time/Stepper": "auto", "Time/Time step": "auto", "Time/Tolerance": "1e-7"}
 
 
@@ -83,12 +81,12 @@ def crack():
     table = Comparison("Tan (2020), Example 2: largest difference from finite elements, 200 x 200 and 400 x 400 cells extrapolated")
     centers = {"Output/Line": "0.495,0.005 ; 0.495,0.995 ; 100"}
     probes = {"Output/Probes": " ; ".join(f"0.5,{k / 20:g}" for k in range(21))}
-    fem = [run_paper("tan_2020/example_2.prm", centers, probes, {"Models": FEM, "Domain/Cells": f"{n}, {n}", "Output/Write at": "", "Time/Tolerance": "1e-6",
+    fem = [run_paper("tan_2020/example_2.prm", centers, probes, {"Models": FE, "Domain/Cells": f"{n}, {n}", "Output/Write at": "", "Time/Tolerance": "1e-6",
                                                              "Domain/Nodes": "vertices", "Boundary conditions/Symmetry": "",
                                                              "Peridynamics/Boundary treatment": "none", "Peridynamics/Surface correction": "none"})
            for n in (200, 400)]
-    wanted = [2 * line(fem[1], FEM)[1] - line(fem[0], FEM)[1],
-              2 * np.array([row["value"] for row in fem[1].rows(FEM, time=0.03)]) - np.array([row["value"] for row in fem[0].rows(FEM, time=0.03)])]
+    wanted = [2 * line(fem[1], FE)[1] - line(fem[0], FE)[1],
+              2 * np.array([row["value"] for row in fem[1].rows(FE, time=0.03)]) - np.array([row["value"] for row in fem[0].rows(FE, time=0.03)])]
     gaps = {}
     for kernel, scene, auto in (("paper's kernel", "tan_2020/example_2_paper.prm", AUTO), ("our kernel", "tan_2020/example_2.prm", {})):
         for correction in ("energy", "none"):
@@ -119,11 +117,11 @@ def inclined(cells=240, limits=(0.95, 0.41)):
     """Bobaru 2012 Example 4: two cracks that are each other's mirror image, along a line through one of them, against finite elements on a finer mesh."""
     table = Comparison("Bobaru (2012), Example 4: inclined cracks, x = 0.4, t = 4.5, in degrees")
     settings = {"Output/Write at": "", "Output/Line": "0.4,-1 ; 0.4,1 ; 41"}
-    wanted = line(run_paper("bobaru_2012/example_4.prm", settings, {"Models": FEM, "Domain/Cells": f"{cells}, {cells}"}), FEM)[1]
+    wanted = line(run_paper("bobaru_2012/example_4.prm", settings, {"Models": FE, "Domain/Cells": f"{cells}, {cells}"}), FE)[1]
     # Measured: 0.61, 0.26 and 9.4 degrees, of which the mesh of 240 x 240 cells has 0.3; on 480 x
     # 480 cells 0.33, 0.59 and 9.4.
     for what, scene, model, more, limit in (("ours", "bobaru_2012/example_4.prm", PD, {}, limits[0]),
-                                            ("finite elements on the same mesh", "bobaru_2012/example_4.prm", FEM, {}, limits[1]),
+                                            ("finite elements on the same mesh", "bobaru_2012/example_4.prm", FE, {}, limits[1]),
                                             ("as published, 60 x 60 cells", "bobaru_2012/example_4_paper.prm", PD, {"Domain/Cells": "60, 60"}, 14)):
         run = run_paper(scene, settings, {"Models": model, "Output/Probes": "0.4,0.3 ; -0.4,0.3 ; 0.2,0 ; -0.2,0"}, more)
         table.add_limit(f"{what}: largest difference along the line", largest(line(run, model)[1], wanted), limit)
@@ -131,6 +129,10 @@ def inclined(cells=240, limits=(0.95, 0.41)):
         for right, left in zip(values[::2], values[1::2]):
             table.add(f"{what}: mirror image", left, right, absolute=1e-9)
     table.show()
+
+
+def inclined_fine():
+    inclined(480, (0.5, 0.9))
 
 
 def growing():
@@ -150,14 +152,14 @@ def growing():
             table.add_limit(f"{conductivity}, peridynamics, t = {t}: imbalance over throughput", abs(lost) / through, 1e-10)
         for t in (3, 4, 5, 7):
             jump[conductivity, t] = run.probe(PD, (0, 0.05), t) - run.probe(PD, (0, -0.05), t)
-    fine = run_paper(scene, {"Models": FEM, "Domain/Cells": "180, 181", "Cracks/Growth step": "0.0083", "Peridynamics/Surface correction": "crack scaling"})
-    for t, lost, through in balances(fine, FEM):
+    fine = run_paper(scene, {"Models": FE, "Domain/Cells": "180, 181", "Cracks/Growth step": "0.0083", "Peridynamics/Surface correction": "crack scaling"})
+    for t, lost, through in balances(fine, FE):
         table.add_limit(f"1.14, finite elements, t = {t}: imbalance over throughput", abs(lost) / through, 1e-10)
     # The cracks meet at 3.54 s, and at 4 s the jump still opens. Measured: 0.76 %, 0.12 % and 0.08
     # %; at 5 s the elements are 0.1 % off those on 360 x 361 cells.
     for t, within in ((4, 0.012), (5, 0.002), (7, 0.0013)):
         table.add(f"1.14, t = {t}: jump across the crossing, against finite elements", jump["1.14", t],
-                  fine.probe(FEM, (0, 0.05), t) - fine.probe(FEM, (0, -0.05), t), relative=within)
+                  fine.probe(FE, (0, 0.05), t) - fine.probe(FE, (0, -0.05), t), relative=within)
         check(jump["0.114", t] < jump["1.14", t], f"t = {t}: the smaller conductivity lags behind")
     check(jump["1.14", 4] > 3 * jump["1.14", 3], "the jump opens when the cracks meet")
     table.show()
@@ -167,10 +169,10 @@ def fibres():
     """Bobaru 2012 Example 6: fibres that conduct a hundred times better than the matrix, across them, against finite elements on a fine mesh."""
     table = Comparison("Bobaru (2012), Example 6: fibres in a matrix, along the scenes' lines, t = 7, in degrees")
     settings = {"Output/Write at": "", "Output/Line": f"{-119 / 120!r},{61 / 120!r} ; {119 / 120!r},{61 / 120!r} ; 120"}
-    wanted = line(run_paper("bobaru_2012/example_6.prm", settings, {"Models": FEM, "Domain/Cells": "240, 240"}), FEM)[1]
+    wanted = line(run_paper("bobaru_2012/example_6.prm", settings, {"Models": FE, "Domain/Cells": "240, 240"}), FE)[1]
     # Measured: 0.024, 0.0028 and 7.1 degrees; against 480 x 480 cells 0.026, 0.0042 and 7.1.
     for what, scene, model, more, limit in (("ours", "bobaru_2012/example_6.prm", PD, {}, 0.039),
-                                            ("finite elements on the same mesh", "bobaru_2012/example_6.prm", FEM, {}, 0.0044),
+                                            ("finite elements on the same mesh", "bobaru_2012/example_6.prm", FE, {}, 0.0044),
                                             ("as published, 60 x 60 cells", "bobaru_2012/example_6_paper.prm", PD, {"Domain/Cells": "60, 60"}, 10.5)):
         run = run_paper(scene, settings, {"Models": model}, more)
         table.add_limit(f"{what}: largest difference along the line", largest(line(run, model)[1], wanted), limit)
@@ -201,7 +203,7 @@ def diyaroglu():
             points, values = line(run, PD, t)
             wanted = exact.thermal_shock(points[:, 0], t)
             table.add_limit(f"{name}, t = {t}: largest error over largest temperature", largest(values, wanted) / float(wanted.max()), limit)
-    fem = [line(run_paper("diyaroglu_2017/example_c.prm", {"Models": FEM, "Domain/Cells": f"{n}, {n}", "Output/Write at": "", "Time/Tolerance": "1e-6"}), FEM)[1] for n in (200, 400)]
+    fem = [line(run_paper("diyaroglu_2017/example_c.prm", {"Models": FE, "Domain/Cells": f"{n}, {n}", "Output/Write at": "", "Time/Tolerance": "1e-6"}), FE)[1] for n in (200, 400)]
     # Measured, in degrees: 2.9 and 0.16.
     for name, limit in (("example_c_paper.prm", 4.5), ("example_c.prm", 0.25)):
         run = run_paper(f"diyaroglu_2017/{name}", {"Models": PD})
@@ -226,18 +228,10 @@ def frames():
     for k, image in enumerate(images):
         check(len(np.unique(image.reshape(-1, 3), axis=0)) > 50, f"frame {k} is not empty")
     check(black[0] < black[1] < black[2], f"the black cracks grow from frame to frame: {black} pixels")
-    for arguments, word in (([run.folder, "--model", FEM], "finite elements"), ([run.folder + "/nowhere"], "is not a directory")):
+    for arguments, word in (([run.folder, "--model", FE], "finite elements"), ([run.folder + "/nowhere"], "is not a directory")):
         done = subprocess.run([sys.executable, script, *arguments], capture_output=True, text=True, check=False)
         check(done.returncode == 1 and word in done.stderr and "Traceback" not in done.stderr, f"animate.py {arguments[1:]}: {done.stderr}")
 
 
-def main():
-    parts = {function.__name__: function for function in (tan, crack, inclined, growing, fibres, diyaroglu, frames)}
-    parts["inclined_fine"] = lambda: inclined(480, (0.5, 0.9))
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(tan, crack, inclined, inclined_fine, growing, fibres, diyaroglu, frames)

@@ -7,32 +7,20 @@
 
 import math
 import os
-import sys
-import tempfile
 
-from scene_test import check, check_close, finish, run_scene
+from scene_test import BC, COUPLED, FE, PD, check, check_close, run_parts, run_scene, scene_text, write_file
 from scene_texts import FOUR_CELLS, SQUARE_MESH
 
-FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
-BC = "Boundary conditions/"
 
-HEAT = """
-set Title     = Parts of a plate
-set Dimension = 2
-subsection Domain
-  set Cells = 12, 11
-end
-subsection Boundary conditions
-  set Dirichlet = bottom: 0
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-  set Probes = 0.3,0.4 ; 0.71,0.93
-end
-"""
+HEAT = scene_text("""
+Title = Parts of a plate
+Dimension = 2
+Domain/Cells = 12, 11
+Boundary conditions/Dirichlet = bottom: 0
+Time/Steady = true
+Output/Fields = none
+Output/Probes = 0.3,0.4 ; 0.71,0.93
+""")
 ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/Poisson ratio": "0.3", BC + "Dirichlet": "",
            BC + "Displacement": "bottom: 0, 0", "Time/Steady": "false"}
 CUBE = {"Dimension": "3", "Domain/Lower corner": "0, 0, 0", "Domain/Upper corner": "1, 1, 1", "Domain/Cells": "8, 7, 8", "Output/Probes": ""}
@@ -151,20 +139,17 @@ $EndPhysicalNames
 
 def meshes():
     """Physical names of a mesh file and its numbers are the same sides; parts of both."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "named.msh")
-        with open(path, "w") as file:
-            file.write(SQUARE_MESH.format(names=NAMES, n=8, cells=FOUR_CELLS))
-        mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Peridynamics/Horizon": "1.1", "Output/Probes": "0.3,0.4"}
-        numbers = run_scene(HEAT, {**mesh, BC + "Dirichlet": "3: 0; 4: x"})
-        names = run_scene(HEAT, {**mesh, BC + "Dirichlet": "cold wall: 0; lid: x"})
-        same("names for numbers", numbers, names)
-        for model in names.summary["models"]:
-            check_close(flux(names, model, "lid"), flux(numbers, model, "4"), relative=1e-10, what=f"{model}: flux through 'lid'")
-        run = run_scene(HEAT, {**mesh, BC + "Dirichlet": "cold wall: 0", BC + "Parts": "warm: lid if x < 0.3 ; also: 4 if x > 0.8", BC + "Flux": "warm: 1 ; also: 2"})
-        for model in run.summary["models"]:
-            check_close(flux(run, model, "warm"), 0.3, relative=1e-11, what=f"{model}: part of a named side")
-            check_close(flux(run, model, "also"), 0.4, relative=1e-11, what=f"{model}: part of a numbered side")
+    path = write_file("named.msh", SQUARE_MESH.format(names=NAMES, n=8, cells=FOUR_CELLS))
+    mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Peridynamics/Horizon": "1.1", "Output/Probes": "0.3,0.4"}
+    numbers = run_scene(HEAT, {**mesh, BC + "Dirichlet": "3: 0; 4: x"})
+    names = run_scene(HEAT, {**mesh, BC + "Dirichlet": "cold wall: 0; lid: x"})
+    same("names for numbers", numbers, names)
+    for model in names.summary["models"]:
+        check_close(flux(names, model, "lid"), flux(numbers, model, "4"), relative=1e-10, what=f"{model}: flux through 'lid'")
+    run = run_scene(HEAT, {**mesh, BC + "Dirichlet": "cold wall: 0", BC + "Parts": "warm: lid if x < 0.3 ; also: 4 if x > 0.8", BC + "Flux": "warm: 1 ; also: 2"})
+    for model in run.summary["models"]:
+        check_close(flux(run, model, "warm"), 0.3, relative=1e-11, what=f"{model}: part of a named side")
+        check_close(flux(run, model, "also"), 0.4, relative=1e-11, what=f"{model}: part of a numbered side")
 
 
 def motion():
@@ -302,8 +287,5 @@ def kalthoff(quiet):
     check_close(angles[0], 67, absolute=8, what="angle of the cracks")  # measured: 61 here, 65 on the scene's own lattice
 
 
-PARTS = {"loads": loads, "whole": whole, "heat": heat, "meshes": meshes, "motion": motion, "holes": holes, "ranks": ranks, "scenes": scenes}
-
-for wanted in sys.argv[1:] or PARTS:
-    PARTS[wanted]()
-finish()
+if __name__ == "__main__":
+    run_parts(loads, whole, heat, meshes, motion, holes, ranks, scenes)

@@ -10,11 +10,10 @@
 
 import math
 import os
-import sys
 
 import h5py
 
-from scene_test import Comparison, check, finish, print_table, run_scene
+from scene_test import Comparison, check, print_table, run_parts, run_scene
 
 SLAB = "prm/papers/diyaroglu_2017/example_d.prm"
 PUBLISHED_SLAB = "prm/papers/diyaroglu_2017/example_d_paper.prm"
@@ -40,7 +39,7 @@ def slab_weight(time, sizes):
     return 0.0125 * math.prod(sizes) * (1 - missing)
 
 
-def moisture(cells, published_gaps):
+def moisture(cells=NARROW[0], published_gaps=NARROW[1]):
     sizes = (21, 18.85, 0.6) if cells == AS_PUBLISHED[0] else [n / 15 for n in cells]
     slab = {"Domain/Cells": ", ".join(map(str, cells)), "Domain/Upper corner": ", ".join(map(repr, sizes))}
     table = Comparison("Weight of an eighth of the slab in mg, against the closed form")
@@ -101,12 +100,5 @@ def names():
         check((model, 120.0) in rows_of(wet, "weight"), f"{model}: weight in totals.csv")
 
 
-def main():
-    parts = {"moisture": lambda: moisture(*NARROW), "moisture_fine": lambda: moisture(*AS_PUBLISHED), "electricity": electricity, "names": names}
-    for name in sys.argv[1:] or ("moisture", "electricity", "names"):
-        parts[name]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(moisture, electricity, names, moisture_fine=lambda: moisture(*AS_PUBLISHED))

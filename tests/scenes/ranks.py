@@ -11,107 +11,63 @@ states: 1e-8 at a solver tolerance of 1e-12.
 
 import os
 import sys
-import tempfile
 
-from scene_test import check, finish, print_table, run_scene
+from scene_test import check, finish, print_table, run_scene, scene_text, write_file
+from scene_texts import mesh_text
 
-PLATE = """
-set Dimension = 2
-subsection Domain
-  set Lower corner = 0, 0
-  set Upper corner = 1.2, 1
-  set Cells        = 24, 20
-end
-subsection Material
-  set Conductivity = 1.5
-end
-subsection Initial and source
-  set Initial value = x*y
-  set Source        = 3*x
-end
-subsection Boundary conditions
-  set Dirichlet  = top: 1 + x; left: 2*y
-  set Flux       = right: 0.5*y
-  set Convection = bottom: 2, 0.3
-end
-subsection Cracks
-  set Segments = 0.2,0.31 ; 0.9,0.73
-end
-subsection Peridynamics
-  set Boundary treatment = none
-end
-subsection Output
-  set Fields = none
-  set Probes = 0.3,0.35 ; 0.31,0.62 ; 1.17,0.04
-  set Line   = 0,0.5 ; 1.2,0.47 ; 23
-end
-subsection Solver
-  set Tolerance = 1e-12
-end
-subsection Time
-  set End time  = 0.02
-  set Tolerance = 1e-6
-end
-"""
+PLATE = scene_text("""
+Dimension = 2
+Domain/Lower corner = 0, 0
+Domain/Upper corner = 1.2, 1
+Domain/Cells = 24, 20
+Material/Conductivity = 1.5
+Initial and source/Initial value = x*y
+Initial and source/Source = 3*x
+Boundary conditions/Dirichlet = top: 1 + x; left: 2*y
+Boundary conditions/Flux = right: 0.5*y
+Boundary conditions/Convection = bottom: 2, 0.3
+Cracks/Segments = 0.2,0.31 ; 0.9,0.73
+Peridynamics/Boundary treatment = none
+Output/Fields = none
+Output/Probes = 0.3,0.35 ; 0.31,0.62 ; 1.17,0.04
+Output/Line = 0,0.5 ; 1.2,0.47 ; 23
+Solver/Tolerance = 1e-12
+Time/End time = 0.02
+Time/Tolerance = 1e-6
+""")
 
-BODY = """
-set Dimension = 3
-subsection Domain
-  set Lower corner = 0, 0, 0
-  set Upper corner = 1, 1, 0.8
-  set Cells        = 10, 10, 8
-end
-subsection Boundary conditions
-  set Dirichlet = top: 1 + x; bottom: 0
-  set Flux      = front: x
-end
-subsection Cracks
-  set Polygons = 0.21,0.5,0.2 ; 0.81,0.5,0.2 ; 0.81,0.5,0.63 ; 0.21,0.5,0.63
-end
-subsection Peridynamics
-  set Boundary treatment = none
-  set Horizon ratio = 2
-end
-subsection Output
-  set Fields = none
-  set Probes = 0.5,0.52,0.33 ; 0.9,0.1,0.7
-  set Line   = 0.5,0,0.4 ; 0.5,1,0.4 ; 11
-end
-subsection Solver
-  set Tolerance = 1e-12
-end
-subsection Time
-  set End time  = 0.02
-  set Tolerance = 1e-6
-end
-"""
+BODY = scene_text("""
+Dimension = 3
+Domain/Lower corner = 0, 0, 0
+Domain/Upper corner = 1, 1, 0.8
+Domain/Cells = 10, 10, 8
+Boundary conditions/Dirichlet = top: 1 + x; bottom: 0
+Boundary conditions/Flux = front: x
+Cracks/Polygons = 0.21,0.5,0.2 ; 0.81,0.5,0.2 ; 0.81,0.5,0.63 ; 0.21,0.5,0.63
+Peridynamics/Boundary treatment = none
+Peridynamics/Horizon ratio = 2
+Output/Fields = none
+Output/Probes = 0.5,0.52,0.33 ; 0.9,0.1,0.7
+Output/Line = 0.5,0,0.4 ; 0.5,1,0.4 ; 11
+Solver/Tolerance = 1e-12
+Time/End time = 0.02
+Time/Tolerance = 1e-6
+""")
 
-BAR = """
-set Dimension = 1
-subsection Domain
-  set Upper corner = 2
-  set Cells        = 80
-end
-subsection Initial and source
-  set Source = sin(x)
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1
-  set Flux      = right: 2
-end
-subsection Peridynamics
-  set Boundary treatment = none
-end
-subsection Output
-  set Fields = none
-  set Probes = 0.333 ; 1.9
-  set Line   = 0 ; 2 ; 31
-end
-subsection Time
-  set End time  = 0.1
-  set Tolerance = 1e-6
-end
-"""
+BAR = scene_text("""
+Dimension = 1
+Domain/Upper corner = 2
+Domain/Cells = 80
+Initial and source/Source = sin(x)
+Boundary conditions/Dirichlet = left: 1
+Boundary conditions/Flux = right: 2
+Peridynamics/Boundary treatment = none
+Output/Fields = none
+Output/Probes = 0.333 ; 1.9
+Output/Line = 0 ; 2 ; 31
+Time/End time = 0.1
+Time/Tolerance = 1e-6
+""")
 
 FIXED = {"euler": {"Time/Stepper": "euler", "Time/Time step": "2e-4"},
          "rk4": {"Time/Stepper": "rk4", "Time/Time step": "3e-4"},
@@ -182,7 +138,7 @@ def bodies():
                         {**choice, "Domain/Nodes": place, "Peridynamics/Operator form": form}, BOTH, form)
 
 
-def mesh_file(folder, n=9):
+def mesh_file(n=9):
     """A Gmsh file of n x n distorted quadrilaterals on the unit square; boundary ids 1 left, 2 right, 3 bottom, 4 top."""
     def place(i, j):
         x, y = i / n, j / n
@@ -196,17 +152,8 @@ def mesh_file(folder, n=9):
     for j in range(n):
         for i in range(n):
             elements.append(f"3 2 9 9 {node[i][j]} {node[i + 1][j]} {node[i + 1][j + 1]} {node[i][j + 1]}")
-    path = os.path.join(folder, "distorted.msh")
-    with open(path, "w") as file:
-        file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n" % (n + 1) ** 2)
-        for j in range(n + 1):
-            for i in range(n + 1):
-                file.write("%d %.16g %.16g 0\n" % (node[i][j], *place(i, j)))
-        file.write("$EndNodes\n$Elements\n%d\n" % len(elements))
-        for k, element in enumerate(elements):
-            file.write(f"{k + 1} {element}\n")
-        file.write("$EndElements\n")
-    return path
+    nodes = ["%.16g %.16g" % place(i, j) for j in range(n + 1) for i in range(n + 1)]
+    return write_file("distorted.msh", mesh_text(nodes, elements))
 
 
 def others():
@@ -234,14 +181,12 @@ def others():
              "Cracks/Segments": "0.2,0.21 ; 0.9,0.13"}, BOTH)
     # Prime cell counts: too many coarse cells for p4est, so every process keeps all of them.
     compare("plate, 331 x 313 cells, chebyshev", PLATE, {**FIXED["chebyshev"], "Domain/Cells": "331, 313", "Time/End time": "1e-4"}, BOTH)
-    folder = tempfile.mkdtemp(prefix="perideal_")
-    mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": mesh_file(folder), "Peridynamics/Horizon": "0.35", "Cracks/Segments": "",
+    mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": mesh_file(), "Peridynamics/Horizon": "0.35", "Cracks/Segments": "",
             "Boundary conditions/Dirichlet": "4: 1 + x; 1: 2*y", "Boundary conditions/Flux": "2: 0.5*y",
             "Boundary conditions/Convection": "3: 2, 0.3", "Output/Probes": "0.3,0.35 ; 0.91,0.62", "Output/Line": "0,0.5 ; 1,0.47 ; 23"}
     compare("mesh file, chebyshev, vertices", PLATE, {**FIXED["chebyshev"], **mesh}, BOTH, "stored")
     compare("mesh file, euler, cell centers", PLATE, {**FIXED["euler"], **mesh, "Domain/Nodes": "cell centers"}, BOTH, "stored")
     compare("mesh file, steady", PLATE, {**ADAPTIVE["steady"], **mesh}, {"peridynamics": 1e-8, "finite elements": 1e-8})
-    return folder
 
 
 def coupled():
@@ -311,9 +256,10 @@ def quick():
 def main():
     parts = {"plates": plates, "bodies": bodies, "others": others, "implicit": implicit, "coupled": coupled,
              "work": work, "quick": quick}
-    folders = [parts[name]() for name in sys.argv[1:] or ("plates", "bodies", "others", "implicit", "coupled", "work")]
+    for name in sys.argv[1:] or ("plates", "bodies", "others", "implicit", "coupled", "work"):
+        parts[name]()
     print_table("Differences from the run on one process", ("case", "model", "processes", "difference", "allowed"), ROWS)
-    finish(*[folder for folder in folders if folder])
+    finish()
 
 
 if __name__ == "__main__":

@@ -5,9 +5,7 @@
 import os
 import re
 
-from scene_test import SOURCE_DIR, Comparison, check, finish, run_scene
-
-PD = "peridynamics"
+from scene_test import PD, SOURCE_DIR, Comparison, check, finish, run_scene
 
 
 def recipes():

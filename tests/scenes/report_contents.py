@@ -9,75 +9,49 @@
 """
 
 import csv
+import functools
 import json
 import math
 import os
 import subprocess
 import sys
-import tempfile
 
-from scene_test import SOURCE_DIR, check, check_close, check_less, finish, run_perideal, run_scene
+from scene_test import (BC, FE, PD, QUIET, SOURCE_DIR, check, check_close, check_less, run_parts, run_perideal, run_scene, scene_text,
+                        temporary_folder, write_file)
 
-FOLDER = tempfile.mkdtemp(prefix="perideal_contents_")
-FEM, PD = "finite elements", "peridynamics"
-QUIET = {"Output/Fields": "none"}
+FOLDER = temporary_folder()
+write = functools.partial(write_file, folder=FOLDER)
 
-BEAM = """set Physics = elasticity
-set Models = finite elements
-subsection Domain
-  set Upper corner = 4, 1
-  set Cells = 32, 8
-end
-subsection Material
-  set Young modulus = 100
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Parts = foot: bottom if x > 1.03 && x < 1.9 ; weight: region sqrt((x - 3)^2 + (y - 0.5)^2) < 0.3 ; back: point 4, 1
-  set Displacement = left: 0, 0 ; foot: free, 0 ; back: free, 0
-  set Traction = weight: 0, -1
-end
-subsection Output
-  set Fields = none
-end
-"""
+BEAM = scene_text("""
+Physics = elasticity
+Models = finite elements
+Domain/Upper corner = 4, 1
+Domain/Cells = 32, 8
+Material/Young modulus = 100
+Material/Poisson ratio = 0.3
+Boundary conditions/Parts = foot: bottom if x > 1.03 && x < 1.9 ; weight: region sqrt((x - 3)^2 + (y - 0.5)^2) < 0.3 ; back: point 4, 1
+Boundary conditions/Displacement = left: 0, 0 ; foot: free, 0 ; back: free, 0
+Boundary conditions/Traction = weight: 0, -1
+Output/Fields = none
+""")
 
-CRACKED = """set Physics = PHYSICS
-set Models = MODELS
-set Dimension = 2
-subsection Domain
-  set Upper corner = 1, 1
-  set Cells = 32, 33
-end
-subsection Material
-  set Young modulus = 100
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set CONDITIONS
-end
-subsection Cracks
-  set Segments = 0.25, 0.5 ; 0.75, 0.5
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-  set Probes = 0.5, 1 ; 1, 0.5
-end
-"""
+CRACKED = scene_text("""
+Dimension = 2
+Domain/Upper corner = 1, 1
+Domain/Cells = 32, 33
+Material/Young modulus = 100
+Material/Poisson ratio = 0.3
+Cracks/Segments = 0.25, 0.5 ; 0.75, 0.5
+Time/Steady = true
+Output/Fields = none
+Output/Probes = 0.5, 1 ; 1, 0.5
+""")
+LOADS = ("Displacement = bottom: 0, 0", "Traction = top: 0, 1")
 
 
-def write(name, text):
-    path = os.path.join(FOLDER, name)
-    with open(path, "w") as file:
-        file.write(text)
-    return path
-
-
-def cracked(name, physics, models, conditions):
-    return write(name, CRACKED.replace("PHYSICS", physics).replace("MODELS", models).replace("CONDITIONS", conditions))
+def cracked(name, physics, models, *conditions):
+    more = [f"Physics = {physics}", f"Models = {models}"] + [BC + condition for condition in conditions]
+    return write(name, CRACKED + scene_text("\n".join(more)))
 
 
 def places():
@@ -100,7 +74,7 @@ def places():
         check(runs[n]["places"] == found and runs[n]["values on sides"] == values, f"the same on {n} processes")
 
     ring = "prm/elasticity/thick_ring.prm"
-    runs = {n: run_scene(ring, {**QUIET, "Models": FEM, "Peridynamics/Surface correction": "none"}, ranks=n).summary for n in (1, 2)}
+    runs = {n: run_scene(ring, {**QUIET, "Models": FE, "Peridynamics/Surface correction": "none"}, ranks=n).summary for n in (1, 2)}
     found = runs[1]["places"]
     check(set(found) == {"1", "3", "5"} and all(p["kind"] == "side" for p in found.values()), f"sides of a mesh: {list(found)}")
     check(len(found["1"]["lines"]) == 1 and len(found["5"]["lines"]) > 5, "straight and curved sides")
@@ -113,7 +87,7 @@ def places():
     check(runs[2]["places"] == found, "the same on 2 processes")
 
     plate = "prm/heat/gmsh_plate.prm"
-    found = run_scene(plate, {**QUIET, "Models": FEM}).summary
+    found = run_scene(plate, {**QUIET, "Models": FE}).summary
     check(set(found["places"]) == set(found["sides"]), f"heat, too: {list(found['places'])}")
 
 
@@ -125,7 +99,7 @@ def notes():
 
     check(len(told(heat, "crack scaling", {"Peridynamics/Surface correction": "none"})) == 1, "a note where crack scaling is missing")
     for more in ({}, {"Peridynamics/Surface correction": "crack scaling"}, {"Cracks/Segments": ""},
-                 {"Models": FEM, "Cracks/Mesh": "removed"}, {"Cracks/Transmission": "0.5"}):
+                 {"Models": FE, "Cracks/Mesh": "removed"}, {"Cracks/Transmission": "0.5"}):
         check(not told(heat, "comes out some percent too large", more), f"no such note with {more}")
 
     phases = {"Cracks/Segments": "", "Material/Phases/Regions": "wire: circle(0.5, 0.5, 0.2)", "Domain/Nodes": "cell centers"}
@@ -136,9 +110,8 @@ def notes():
         check(run.model(PD)["settings"]["interface rule"] == rule, "the rule is a setting")
     check("interface rule" not in run_scene(heat, {"Cracks/Segments": ""}).model(PD)["settings"], "of one material there is none")
 
-    loads = "Displacement = bottom: 0, 0 \n  set Traction = top: 0, 1"
-    for name, models, ratio, expected in (("pd", PD, "3", ""), ("far", PD, "9", "room around"), ("both", f"{FEM}, {PD}", "9", "peridynamics has none"), ("fem", FEM, "3", "")):
-        summary = run_scene(cracked(name + ".prm", "elasticity", models, loads), {"Peridynamics/Horizon ratio": ratio}).summary
+    for name, models, ratio, expected in (("pd", PD, "3", ""), ("far", PD, "9", "room around"), ("both", f"{FE}, {PD}", "9", "peridynamics has none"), ("fem", FE, "3", "")):
+        summary = run_scene(cracked(name + ".prm", "elasticity", models, *LOADS), {"Peridynamics/Horizon ratio": ratio}).summary
         check(expected in summary.get("no stress intensity", "") and (expected != "") == ("no stress intensity" in summary),
               f"{models}: {summary.get('no stress intensity')}")
     status, stdout, _ = run_perideal(["run", os.path.join(FOLDER, "pd.prm"), "-s", f"Output directory={FOLDER}/pd", "-s", "Peridynamics/Horizon ratio=9"])
@@ -148,56 +121,38 @@ def notes():
 
     # What an image conducts as a whole, of electricity.
     image = write("wire.pgm", "P2 8 8 255\n" + "\n".join(" ".join("200" if 2 <= i < 6 and 2 <= j < 6 else "0" for i in range(8)) for j in range(8)))
-    scene = write("image.prm", f"""set Physics = electricity
-set Models = {FEM}
-subsection Domain
-  set Shape = image
-  set Image = {image}
-  set Image colors = resin: 0 ; wire: 200
-  set Upper corner = 2, 1
-end
-subsection Material
-  set Conductivity = 3
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1; right: 0
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-end
-""")
-    check_close(run_scene(scene, {}).model(FEM)["effective conductivity"], 3, relative=1e-9, what="of one conductivity: that")
+    scene = write("image.prm", scene_text(f"""
+Physics = electricity
+Models = {FE}
+Domain/Shape = image
+Domain/Image = {image}
+Domain/Image colors = resin: 0 ; wire: 200
+Domain/Upper corner = 2, 1
+Material/Conductivity = 3
+Boundary conditions/Dirichlet = left: 1; right: 0
+Time/Steady = true
+Output/Fields = none
+"""))
+    check_close(run_scene(scene, {}).model(FE)["effective conductivity"], 3, relative=1e-9, what="of one conductivity: that")
 
 
 def moisture():
-    scene = write("wet.prm", """set Physics = moisture
-set Models = finite elements
-subsection Domain
-  set Upper corner = 2, 1
-  set Cells = 10, 4
-end
-subsection Material
-  set Conductivity = 0.02
-  set Saturated concentration = 12e-6
-end
-subsection Boundary conditions
-  set Convection = right: 0.03, 1
-end
-subsection Time
-  set End time = 5
-end
-subsection Output
-  set Fields = none
-end
-""")
+    scene = write("wet.prm", scene_text("""
+Physics = moisture
+Models = finite elements
+Domain/Upper corner = 2, 1
+Domain/Cells = 10, 4
+Material/Conductivity = 0.02
+Material/Saturated concentration = 12e-6
+Boundary conditions/Convection = right: 0.03, 1
+Time/End time = 5
+Output/Fields = none
+"""))
     wet = run_scene(scene, {})
     mass = run_scene(scene, {"Material/Density": "12e-6", "Material/Conductivity": "0.02*12e-6",
                             "Boundary conditions/Convection": "right: 0.03*12e-6, 1"})
     check((wet.summary["moisture counts"], mass.summary["moisture counts"]) == ("wetness", "mass"), "what flows are")
-    entered = [run.model(FEM)["heat balance"]["cumulative"]["entered"] for run in (wet, mass)]
+    entered = [run.model(FE)["heat balance"]["cumulative"]["entered"] for run in (wet, mass)]
     weights = [next(float(r["value"]) for r in run.totals if r["quantity"] == "weight") for run in (wet, mass)]
     check_close(entered[0] * 12e-6, weights[0], relative=1e-6, what="wetness times volume times the saturated concentration is the weight")
     check_close(entered[1], weights[1], relative=1e-6, what="with Density = C_sat what enters is the weight")
@@ -205,7 +160,7 @@ end
 
 
 def studies():
-    scene = cracked("study.prm", "elasticity", f"{FEM}, {PD}", "Displacement = bottom: 0, 0 \n  set Traction = top: 0, 1")
+    scene = cracked("study.prm", "elasticity", f"{FE}, {PD}", *LOADS)
     output = os.path.join(FOLDER, "study")
     status, _, stderr = run_perideal(["study", scene, "--vary", "Domain/Cells=32, 33 | 40, 41", "--vary", "Peridynamics/Horizon ratio=2 | 3",
                                       "--output", output, "-q"])
@@ -235,37 +190,30 @@ def studies():
     sys.path.insert(0, os.path.dirname(script))
     import study_figures
     found, _ = study_figures.collect(whole, {"x": "Domain/Cells", "y": "uy at (0.5, 1)", "lines": []})
-    check(sorted(found) == [FEM, PD + ", Horizon ratio = 2", PD + ", Horizon ratio = 3"], f"lines: {sorted(found)}")
+    check(sorted(found) == [FE, PD + ", Horizon ratio = 2", PD + ", Horizon ratio = 3"], f"lines: {sorted(found)}")
     check(all(len(points) == 2 for points in found.values()), "a point for each lattice")
     # One line for each model: all that peridynamics has found, whichever is smaller.
     found, _ = study_figures.collect(whole, {"x": "Domain/Cells", "y": "uy at (0.5, 1)", "lines": ["model"]})
-    values = {model: sorted(float(line["uy at (0.5, 1)"]) for line in lines if line["model"] == model) for model in (FEM, PD)}
+    values = {model: sorted(float(line["uy at (0.5, 1)"]) for line in lines if line["model"] == model) for model in (FE, PD)}
     check(sorted(y for _, y in found[PD]) == values[PD] and len(found[PD]) == 4, f"points of peridynamics: {found[PD]}")
-    check(sorted(y for _, y in found[FEM]) == sorted(set(values[FEM])) and len(found[FEM]) == 2, f"points of elements: {found[FEM]}")
+    check(sorted(y for _, y in found[FE]) == sorted(set(values[FE])) and len(found[FE]) == 2, f"points of elements: {found[FE]}")
     # Of what was computed again the shorter time.
     found, _ = study_figures.collect(whole, {"x": "Domain/Cells", "y": "wall time", "lines": ["model"]})
     times = {}
     for line in lines:
-        if line["model"] == FEM:
+        if line["model"] == FE:
             times.setdefault(line["Domain/Cells"], []).append(float(line["wall time"]))
-    shortest = zip(sorted(y for _, y in found[FEM]), sorted(min(t) for t in times.values()))
-    check(all(math.isclose(a, b, rel_tol=1e-9) for a, b in shortest) and len(found[FEM]) == len(times) and len(found[PD]) == 4,
+    shortest = zip(sorted(y for _, y in found[FE]), sorted(min(t) for t in times.values()))
+    check(all(math.isclose(a, b, rel_tol=1e-9) for a, b in shortest) and len(found[FE]) == len(times) and len(found[PD]) == 4,
           f"wall times: {found}")
     check(study_figures.label_of(whole, "uy at (0.5, 1)") == "Displacement in y at (0.5, 1) (m)", "the label with its unit")
 
     # Such a column may be asked for.
-    file = write("study.json", json.dumps({"rows": [{"name": "a", "scene": scene, "set": {"Models": FEM}}],
+    file = write("study.json", json.dumps({"rows": [{"name": "a", "scene": scene, "set": {"Models": FE}}],
                                            "figures": [{"name": "f", "x": "unknowns", "y": "uy at (0.5, 1)"}]}))
     status, _, stderr = run_perideal(["study", file, "--output", os.path.join(FOLDER, "asked"), "-q"])
     check(status == 0, f"a figure of what runs find: {stderr}")
 
 
-def main():
-    parts = {function.__name__: function for function in (places, notes, moisture, studies)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish(FOLDER)
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(places, notes, moisture, studies)

@@ -4,12 +4,10 @@
 
 import html.parser
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
 
-from scene_test import SOURCE_DIR, check, finish, run_perideal
+from scene_test import SOURCE_DIR, check, finish, run_perideal, temporary_folder, write_file
 
 HOSTILE = "<svg onload=alert(1)>&amp;\"'<b>$\\frac</b>"
 PHASE = "<svg onload=alert(1)>&'<b>$\\frac"
@@ -76,13 +74,11 @@ class Tags(html.parser.HTMLParser):
 
 
 def main():
-    folder = tempfile.mkdtemp(prefix="perideal_")
+    folder = temporary_folder()
     for physics, (young, poisson, entry, conditions) in KINDS.items():
         text = TEXT.replace("PHYSICS", physics).replace("YOUNG", young).replace("POISSON", poisson).replace("CONDITIONS", conditions)
         text = text.replace("ENTRY", entry)
-        path = os.path.join(folder, f"<i onclick=x>& '{physics}'.prm")
-        with open(path, "w") as file:
-            file.write(text)
+        path = write_file(f"<i onclick=x>& '{physics}'.prm", text, folder)
         results = os.path.join(folder, physics)
         status, stdout, stderr = run_perideal(["run", path, "-s", f"Output directory={results}"])
         if not check(status == 0, f"{physics}: exit status {status}\n{stdout[-1500:]}{stderr[-1500:]}"):
@@ -103,7 +99,6 @@ def main():
         check(f"'{physics}'.prm" in words, f"{physics}: the name of the scene")
         for text in tags.alternatives:
             check("&lt;" not in text and "&amp;lt;" not in text, f"{physics}: escaped twice: {text}")
-    shutil.rmtree(folder)
     finish()
 
 

@@ -15,6 +15,7 @@ cracks is put into the matrix anew).
 """
 
 import csv
+import functools
 import glob
 import json
 import math
@@ -23,14 +24,12 @@ import random
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
 import h5py
 
-from scene_test import SOURCE_DIR, Run, check, check_clean_error, check_message, finish, run_scene
-from scene_test import EXECUTABLE, _environment, _folders, _on_ranks  # signals need the process itself
+from scene_test import SOURCE_DIR, Run, check, check_clean_error, check_message, run_parts, temporary_folder
+from scene_test import EXECUTABLE, _environment, _on_ranks  # signals need the process itself
 
 IMPLICIT = 1e-12
 
@@ -80,9 +79,7 @@ def run(scene, folder, overrides, more=(), ranks=1):
 
 
 def new_folder():
-    folder = tempfile.mkdtemp(prefix="perideal_resume_")
-    _folders.append(folder)
-    return os.path.join(folder, "results")
+    return os.path.join(temporary_folder(), "results")
 
 
 def tables_of(folder):
@@ -393,21 +390,11 @@ def check_signals():
         check(n_of_scene > 0, f"{scene}: no run went on from a checkpoint")
 
 
+def check_scenes(part):
+    for one in SCENES[part]:
+        check_scene(*one)
+
+
 if __name__ == "__main__":
-    part = sys.argv[1] if len(sys.argv) == 2 else ""
-    if part in SCENES:
-        for one in SCENES[part]:
-            check_scene(*one)
-    elif part == "running":
-        check_running()
-    elif part == "interrupted":
-        check_interrupted()
-    elif part == "ranks":
-        check_ranks()
-    elif part == "mistakes":
-        check_mistakes()
-    elif part == "signals":
-        check_signals()
-    else:
-        sys.exit(__doc__)
-    finish()
+    run_parts(running=check_running, interrupted=check_interrupted, ranks=check_ranks, mistakes=check_mistakes, signals=check_signals,
+              **{part: functools.partial(check_scenes, part) for part in SCENES})

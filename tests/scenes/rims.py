@@ -6,37 +6,24 @@
 """
 
 import math
-import sys
 
-from scene_test import check, check_close, finish, run_scene
+from scene_test import BC, COUPLED, FE, PD, check_close, run_parts, run_scene, scene_text
 
-FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
 ALL = f"{FE}, {PD}, {COUPLED}"
-BC = "Boundary conditions/"
 
-HEAT = """
-set Dimension = 2
-set Models    = finite elements, peridynamics, coupled
-subsection Domain
-  set Lower corner = -4, -4
-  set Upper corner = 4, 4
-  set Cells        = 32, 32
-  set Holes        = circle: 0, 0, 1
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 0; top: 0; bottom: 0
-  set Flux      = hole: 1
-end
-subsection Coupling
-  set Zone = 1.5 - sqrt(x^2 + y^2)
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-end
-"""
+HEAT = scene_text("""
+Dimension = 2
+Models = finite elements, peridynamics, coupled
+Domain/Lower corner = -4, -4
+Domain/Upper corner = 4, 4
+Domain/Cells = 32, 32
+Domain/Holes = circle: 0, 0, 1
+Boundary conditions/Dirichlet = left: 0; right: 0; top: 0; bottom: 0
+Boundary conditions/Flux = hole: 1
+Coupling/Zone = 1.5 - sqrt(x^2 + y^2)
+Time/Steady = true
+Output/Fields = none
+""")
 
 
 def polygon(n, radius, degrees, center=(0, 0)):
@@ -84,7 +71,4 @@ def heat():
 
 
 if __name__ == "__main__":
-    parts = {function.__name__: function for function in (heat,)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
+    run_parts(heat)

@@ -2,11 +2,14 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Run scenes and check what they write.
 
-    from scene_test import run_scene, check_close, finish
+    from scene_test import PD, check_close, run_parts, run_scene
 
-    run = run_scene("prm/quick_start.prm", {"Domain/Cells": "20, 20"}, ranks=2)
-    check_close(run.probe("peridynamics", (0, 0.1), time=0.5), 12.34, relative=0.01, what="T at (0, 0.1)")
-    finish()
+    def plate():
+        run = run_scene("prm/quick_start.prm", {"Domain/Cells": "20, 20"}, ranks=2)
+        check_close(run.probe(PD, (0, 0.1), time=0.5), 12.34, relative=0.01, what="T at (0, 0.1)")
+
+    if __name__ == "__main__":
+        run_parts(plate)
 
 A failed check is printed and counted, and the script goes on; finish() ends it with exit status 1 if any failed. A scene
 that should have run and did not ends the script at once.
@@ -31,6 +34,11 @@ SOURCE_DIR = os.environ.get(
 EXECUTABLE = os.environ.get("PERIDEAL_EXECUTABLE", os.path.join(SOURCE_DIR, "build/release/applications/perideal"))
 SERVER = os.environ.get("PERIDEAL_SCENE_SERVER", "")
 MPIRUN = os.environ.get("PERIDEAL_MPIRUN", "mpirun")
+
+# Models, and what many scripts set.
+FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
+BC = "Boundary conditions/"
+QUIET = {"Output/Fields": "none"}
 
 # What a user should never see.
 TRACES = ("Stacktrace", "An error occurred in line", "terminate called", "Segmentation fault", "Signal:",
@@ -210,6 +218,41 @@ class _SceneServer:
 atexit.register(_SceneServer.stop_all)
 
 
+def scene_text(lines):
+    """The text of a scene from lines `Section/Entry = value`, named as in overrides; lines next to each other share a section."""
+    text, inside = [], []
+
+    def enter(sections):
+        common = len(os.path.commonprefix([sections, inside]))
+        for depth in reversed(range(common, len(inside))):
+            text.append("  " * depth + "end")
+        for depth, section in enumerate(sections[common:], common):
+            text.append("  " * depth + f"subsection {section}")
+        inside[:] = sections
+
+    for line in lines.strip().splitlines():
+        name, value = line.split("=", 1)
+        *sections, entry = name.strip().split("/")
+        enter(sections)
+        text.append("  " * len(sections) + f"set {entry} = {value.strip()}")
+    enter([])
+    return "\n".join(text) + "\n"
+
+
+def temporary_folder():
+    """A folder that finish() removes."""
+    _folders.append(tempfile.mkdtemp(prefix="perideal_"))
+    return _folders[-1]
+
+
+def write_file(name, text, folder=None):
+    """Into a temporary folder, unless one is given; returns the path."""
+    path = os.path.join(folder or temporary_folder(), name)
+    with open(path, "wb") as file:
+        file.write(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
 def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, timeout=3000, alone=False, check_status=True):
     """Run a scene in a fresh folder.
 
@@ -224,9 +267,7 @@ def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, ti
     else:
         _folders.append(folder)
     if "\n" in scene:
-        path = os.path.join(folder, "scene.prm")
-        with open(path, "w") as file:
-            file.write(scene)
+        path = write_file("scene.prm", scene, folder)
     else:
         path = scene if os.path.isabs(scene) else os.path.join(SOURCE_DIR, scene)
     results = os.path.join(folder, "results")
@@ -352,9 +393,22 @@ def print_table(title, columns, rows):
         print("  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip(), flush=True)
 
 
-def finish(*more_folders):
-    """Remove the folders (and those given), print the number of checks and end the script."""
-    for folder in _folders + list(more_folders):
+def run_parts(*parts, **on_demand):
+    """Run the parts that the arguments of the script name, and finish.
+
+    parts: functions, which all run where there are no arguments; on_demand: more of them, by name.
+    """
+    named = {**{part.__name__: part for part in parts}, **on_demand}
+    for name in sys.argv[1:] or [part.__name__ for part in parts]:
+        if name not in named:
+            sys.exit(f"no part '{name}' among {', '.join(named)}")
+        named[name]()
+    finish()
+
+
+def finish():
+    """Remove the folders, print the number of checks and end the script."""
+    for folder in _folders:
         shutil.rmtree(folder, ignore_errors=True)
     print(f"{_checks['passed']} checks passed, {_checks['failed']} failed")
     sys.exit(1 if _checks["failed"] or not _checks["passed"] else 0)

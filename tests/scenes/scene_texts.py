@@ -2,22 +2,27 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Scenes and meshes that several tests start from."""
 
+from scene_test import scene_text
+
 # A strip of width 1 that is pulled along y, for cracks from its sides.
-PULLED_STRIP = """
-set Dimension = 2
-set Physics = elasticity
-subsection Domain
-  set Lower corner = 0, -1.5
-  set Upper corner = 1, 1.5
-end
-subsection Material
-  set Young modulus = 200
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Traction = top: 0, 1 ; bottom: 0, -1
-end
-"""
+PULLED_STRIP = scene_text("""
+Dimension = 2
+Physics = elasticity
+Domain/Lower corner = 0, -1.5
+Domain/Upper corner = 1, 1.5
+Material/Young modulus = 200
+Material/Poisson ratio = 0.3
+Boundary conditions/Traction = top: 0, 1 ; bottom: 0, -1
+""")
+
+
+def mesh_text(nodes, elements, names=()):
+    """A Gmsh file of nodes "x y" and elements "kind 2 side side node ..." without their numbers; names: of sides 1, 2, ..."""
+    numbered = lambda lines, end="": "".join(f"{k + 1} {line}{end}\n" for k, line in enumerate(lines))
+    named = f"$PhysicalNames\n{len(names)}\n" + "".join(f'1 {k + 1} "{name}"\n' for k, name in enumerate(names)) + "$EndPhysicalNames\n"
+    return (f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{named if names else ''}$Nodes\n{len(nodes)}\n{numbered(nodes, ' 0')}$EndNodes\n"
+            f"$Elements\n{len(elements)}\n{numbered(elements)}$EndElements\n")
+
 
 # A Gmsh file of the unit square: sides 3 (bottom) and 4 (top). names: its $PhysicalNames, or
 # nothing; n: how many elements there are, the four of the sides included; cells: numbered from 5.

@@ -5,23 +5,16 @@
     slender_bodies.py strip | waves | notes
 """
 
-import sys
+from scene_test import PD, Comparison, check, run_parts, run_scene, scene_text
 
-from scene_test import Comparison, check, finish, run_scene
-
-PD = "peridynamics"
-BODY = """
-set Physics = elasticity
-set Models  = peridynamics
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.3
-  set Density       = 1
-end
-subsection Output
-  set Fields = none
-end
-"""
+BODY = scene_text("""
+Physics = elasticity
+Models = peridynamics
+Material/Young modulus = 1
+Material/Poisson ratio = 0.3
+Material/Density = 1
+Output/Fields = none
+""")
 
 
 def size(dim, thick, long):
@@ -90,10 +83,5 @@ def notes():
         check(word in run.stdout + run.stderr, f"no note that says {word}:\n{run.stdout[-2000:]}")
 
 
-def main():
-    {"strip": strip, "waves": waves, "notes": notes}[sys.argv[1]]()
-    finish()
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(strip, waves, notes)

@@ -8,60 +8,38 @@ whose square differs by 7e-4 between the two).
     slender_cracks.py default | ranks
 """
 
-import math
-import sys
+from scene_test import COUPLED, FE, Comparison, check, run_parts, run_scene, scene_text
 
-from scene_test import Comparison, check, finish, run_scene
-
-FE, COUPLED = "finite elements", "coupled"
 TIP = "crack 1 end 2"
 K_FLEXURE, K_CANTILEVER = 129.0, 32.68
 
-COMMON = """
-set Dimension = 2
-set Physics = elasticity
-set Models = finite elements, coupled
-subsection Material
-  set Young modulus = 71700
-  set Poisson ratio = 0.33
-end
-subsection Elasticity
-  set Contact = false
-end
-subsection Output
-  set Fields = none
-end
-"""
+COMMON = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = finite elements, coupled
+Material/Young modulus = 71700
+Material/Poisson ratio = 0.33
+Elasticity/Contact = false
+Output/Fields = none
+""")
 
-FLEXURE = COMMON + """
-subsection Domain
-  set Lower corner = -0.5, -0.5
-  set Upper corner = 15.5, 0.5
-end
-subsection Boundary conditions
-  set Parts = lower: point 0, -0.5 ; upper: point 0, 0.5 ; rfoot: point 15, -0.5 ; load: point 7.5, 0.5 ; mid: point 7.5,-0.5
-  set Displacement = rfoot: free, 0 ; mid: 0, 0
-  set Traction = lower: 0, 2.5 ; upper: 0, 2.5 ; load: 0, -10
-end
-subsection Cracks
-  set Segments = -0.5,0 ; 6,0
-end
-"""
+FLEXURE = COMMON + scene_text("""
+Domain/Lower corner = -0.5, -0.5
+Domain/Upper corner = 15.5, 0.5
+Boundary conditions/Parts = lower: point 0, -0.5 ; upper: point 0, 0.5 ; rfoot: point 15, -0.5 ; load: point 7.5, 0.5 ; mid: point 7.5,-0.5
+Boundary conditions/Displacement = rfoot: free, 0 ; mid: 0, 0
+Boundary conditions/Traction = lower: 0, 2.5 ; upper: 0, 2.5 ; load: 0, -10
+Cracks/Segments = -0.5,0 ; 6,0
+""")
 
-CANTILEVER = COMMON + """
-subsection Domain
-  set Lower corner = 0, -0.5
-  set Upper corner = 8, 0.5
-end
-subsection Boundary conditions
-  set Parts = lower: point 0, -0.5 ; upper: point 0, 0.5
-  set Displacement = right: 0, 0
-  set Traction = lower: 0, -1 ; upper: 0, 1
-end
-subsection Cracks
-  set Segments = 0,0 ; 3,0
-end
-"""
+CANTILEVER = COMMON + scene_text("""
+Domain/Lower corner = 0, -0.5
+Domain/Upper corner = 8, 0.5
+Boundary conditions/Parts = lower: point 0, -0.5 ; upper: point 0, 0.5
+Boundary conditions/Displacement = right: 0, 0
+Boundary conditions/Traction = lower: 0, -1 ; upper: 0, 1
+Cracks/Segments = 0,0 ; 3,0
+""")
 
 
 def flexure(n, more=None, ranks=1):
@@ -108,5 +86,4 @@ def ranks():
 
 
 if __name__ == "__main__":
-    {"default": default, "ranks": ranks}[sys.argv[1]]()
-    finish()
+    run_parts(default, ranks)

@@ -6,148 +6,96 @@
 """
 
 import csv
+import functools
 import json
 import math
 import os
 import subprocess
 import sys
-import tempfile
 
-from scene_test import SOURCE_DIR, check, check_close, finish, run_perideal, run_scene
+from scene_test import SOURCE_DIR, check, check_close, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
 
-PLATE = """
-set Title = Plate with a crack
-set Dimension = 2
-set Models = finite elements, peridynamics, coupled
-subsection Domain
-  set Lower corner = -1, -1
-  set Upper corner = 1, 1
-  set Cells = 49, 49
-end
-subsection Boundary conditions
-  set Dirichlet = top: 1; bottom: -1
-end
-subsection Cracks
-  set Segments = -0.5,0 ; 0.5,0
-end
-"""
+PLATE = scene_text("""
+Title = Plate with a crack
+Dimension = 2
+Models = finite elements, peridynamics, coupled
+Domain/Lower corner = -1, -1
+Domain/Upper corner = 1, 1
+Domain/Cells = 49, 49
+Boundary conditions/Dirichlet = top: 1; bottom: -1
+Cracks/Segments = -0.5,0 ; 0.5,0
+""")
 
-BAR = """
-set Title = Bar
-set Dimension = 1
-set Models = finite elements, peridynamics
-subsection Domain
-  set Cells = 200
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 1
-end
-"""
+BAR = scene_text("""
+Title = Bar
+Dimension = 1
+Models = finite elements, peridynamics
+Domain/Cells = 200
+Boundary conditions/Dirichlet = left: 0; right: 1
+""")
 
-CUBE = """
-set Title = Cube
-set Dimension = 3
-set Models = peridynamics
-subsection Domain
-  set Cells = 16, 16, 16
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 1
-end
-"""
+CUBE = scene_text("""
+Title = Cube
+Dimension = 3
+Models = peridynamics
+Domain/Cells = 16, 16, 16
+Boundary conditions/Dirichlet = left: 0; right: 1
+""")
 
-SPLICE = """
-set Title = Splice
-set Dimension = 2
-set Models = coupled
-subsection Domain
-  set Cells = 16, 16
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1; right: 0
-end
-subsection Coupling
-  set Scheme = splice
-  set Zone = 0.5 - x
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-end
-"""
+SPLICE = scene_text("""
+Title = Splice
+Dimension = 2
+Models = coupled
+Domain/Cells = 16, 16
+Boundary conditions/Dirichlet = left: 1; right: 0
+Coupling/Scheme = splice
+Coupling/Zone = 0.5 - x
+Time/Steady = true
+Output/Fields = none
+""")
 
-GRADED = """
-set Title = Graded plate
-set Dimension = 2
-set Models = finite elements, coupled
-subsection Domain
-  set Cells = 64, 64
-  set Coarsening = 2
-end
-subsection Cracks
-  set Segments = 0.3,0.5 ; 0.7, 0.5
-end
-subsection Boundary conditions
-  set Dirichlet = top: 1; bottom: 0
-end
-"""
+GRADED = scene_text("""
+Title = Graded plate
+Dimension = 2
+Models = finite elements, coupled
+Domain/Cells = 64, 64
+Domain/Coarsening = 2
+Cracks/Segments = 0.3,0.5 ; 0.7, 0.5
+Boundary conditions/Dirichlet = top: 1; bottom: 0
+""")
 
 # Pulled apart: bonds break at many places at once, and parts come loose.
-TORN = """
-set Title = Torn bar
-set Physics = elasticity
-set Dimension = 1
-set Models = peridynamics
-subsection Elasticity
-  set Solver = dynamics
-  set Contact = false
-end
-subsection Material
-  set Young modulus = 100
-  set Density = 1
-  set Critical stretch = 0.01
-end
-subsection Domain
-  set Cells = 80
-end
-subsection Boundary conditions
-  set Velocity = left: -1; right: 1
-end
-"""
+TORN = scene_text("""
+Title = Torn bar
+Physics = elasticity
+Dimension = 1
+Models = peridynamics
+Elasticity/Solver = dynamics
+Elasticity/Contact = false
+Material/Young modulus = 100
+Material/Density = 1
+Material/Critical stretch = 0.01
+Domain/Cells = 80
+Boundary conditions/Velocity = left: -1; right: 1
+""")
 
 # Some of its bonds are broken, and nothing moves it but round-off.
-FULL = """
-set Title = Plate that turns far
-set Physics = elasticity
-set Dimension = 2
-set Models = peridynamics
-subsection Elasticity
-  set Solver = dynamics
-  set Kinematics = full
-end
-subsection Material
-  set Young modulus = 100
-  set Density = 1
-  set Poisson ratio = 0.3
-end
-subsection Domain
-  set Cells = 10, 10
-end
-subsection Boundary conditions
-  set Displacement = left: 0, 0
-end
-"""
+FULL = scene_text("""
+Title = Plate that turns far
+Physics = elasticity
+Dimension = 2
+Models = peridynamics
+Elasticity/Solver = dynamics
+Elasticity/Kinematics = full
+Material/Young modulus = 100
+Material/Density = 1
+Material/Poisson ratio = 0.3
+Domain/Cells = 10, 10
+Boundary conditions/Displacement = left: 0, 0
+""")
 
-FOLDER = tempfile.mkdtemp(prefix="perideal_stability_")
-
-
-def write(name, text):
-    path = os.path.join(FOLDER, name)
-    with open(path, "w") as file:
-        file.write(text)
-    return path
+FOLDER = temporary_folder()
+write = functools.partial(write_file, folder=FOLDER)
 
 
 def study(scene, *options, output="results", ranks=1, expect=0):
@@ -345,12 +293,5 @@ def ranks():
     check(stderr.count("perideal: error") == 1 and "cannot write" in stderr, f"one message:\n{stderr}")
 
 
-def main():
-    parts = {part.__name__: part for part in (limits, motion, breaks, maps, settings, solids, certificate, mistakes, ranks)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish(FOLDER)
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(limits, motion, breaks, maps, settings, solids, certificate, mistakes, ranks)

@@ -5,29 +5,22 @@
 Each is refused within seconds and 3 GB of addresses, with exit status 1 and one message.
 """
 
+import functools
 import os
 import resource
-import shutil
 import struct
 import subprocess
-import tempfile
 import zlib
 
-from scene_test import EXECUTABLE, SOURCE_DIR, Run, check, check_clean_error, check_message, finish, print_table
+from scene_test import EXECUTABLE, Run, check, check_clean_error, check_message, finish, print_table, temporary_folder, write_file
 
-FOLDER = tempfile.mkdtemp(prefix="perideal_")
+FOLDER = temporary_folder()
+write = functools.partial(write_file, folder=FOLDER)
 
 MESH = "set Models = finite elements\nsubsection Domain\nset Shape = mesh file\nset Mesh file = {}\nend\nsubsection Peridynamics\nset Horizon = 1\nend\n"
 
 IMAGE = ("set Models = finite elements\nsubsection Domain\nset Shape = image\nset Image = {}\nset Image colors = a: 0..255\n"
          "set Cells per pixel = {}\nend\n")
-
-
-def write(name, text):
-    path = os.path.join(FOLDER, name)
-    with open(path, "wb") as file:
-        file.write(text if isinstance(text, bytes) else text.encode())
-    return path
 
 
 def limit_memory():
@@ -96,5 +89,4 @@ def ask(command, arguments, words):
 
 if __name__ == "__main__":
     main()
-    shutil.rmtree(FOLDER, ignore_errors=True)
     finish()

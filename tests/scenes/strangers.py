@@ -8,53 +8,32 @@
     strangers.py meshes     files as others write them
 """
 
-import os
-import sys
-import tempfile
-
 import numpy as np
 
-from scene_test import Comparison, check, check_close, finish, run_scene
+from scene_test import BC, COUPLED, FE, PD, Comparison, check, check_close, run_parts, run_scene, scene_text, write_file
+from scene_texts import mesh_text
 
-FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
-BC = "Boundary conditions/"
 
-SLIT = """
-set Dimension = 2
-set Physics = elasticity
-subsection Domain
-  set Cells = 41, 41
-  set Holes = rectangle: 0, 0.49, 0.5, 0.51
-end
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Displacement = bottom: free, 0 ; top: free, 1e-3 ; right: 0, free
-end
-subsection Output
-  set Fields = none
-  set Probes = 0.01, 0.4878 ; 0.01, 0.5122
-end
-"""
+SLIT = scene_text("""
+Dimension = 2
+Physics = elasticity
+Domain/Cells = 41, 41
+Domain/Holes = rectangle: 0, 0.49, 0.5, 0.51
+Material/Young modulus = 1
+Material/Poisson ratio = 0.3
+Boundary conditions/Displacement = bottom: free, 0 ; top: free, 1e-3 ; right: 0, free
+Output/Fields = none
+Output/Probes = 0.01, 0.4878 ; 0.01, 0.5122
+""")
 
-HEAT = """
-set Dimension = 2
-subsection Domain
-  set Cells = 41, 41
-  set Holes = rectangle: 0, 0.49, 0.5, 0.51
-end
-subsection Boundary conditions
-  set Dirichlet = bottom: 0 ; top: 1
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-end
-"""
+HEAT = scene_text("""
+Dimension = 2
+Domain/Cells = 41, 41
+Domain/Holes = rectangle: 0, 0.49, 0.5, 0.51
+Boundary conditions/Dirichlet = bottom: 0 ; top: 1
+Time/Steady = true
+Output/Fields = none
+""")
 
 
 def lines_of(xs, ys, holds):
@@ -68,7 +47,7 @@ def lines_of(xs, ys, holds):
         for corner in cell:
             if corner not in number:
                 number[corner] = len(number) + 1
-                nodes.append(f"{number[corner]} {xs[corner[0]]!r} {ys[corner[1]]!r} 0")
+                nodes.append(f"{xs[corner[0]]!r} {ys[corner[1]]!r}")
     edges = {}
     for cell in cells:
         for a, b in zip(cell, cell[1:] + cell[:1]):
@@ -80,16 +59,7 @@ def lines_of(xs, ys, holds):
             side = 1 if i == k == 0 else 2 if i == k == len(xs) - 1 else 3 if j == m == 0 else 4 if j == m == len(ys) - 1 else 5
             elements.append(f"1 2 {side} {side} {number[found[0][0]]} {number[found[0][1]]}")
     elements += [f"3 2 9 9 " + " ".join(str(number[c]) for c in cell) for cell in cells]
-    names = '$PhysicalNames\n5\n1 1 "left"\n1 2 "right"\n1 3 "bottom"\n1 4 "top"\n1 5 "slot"\n$EndPhysicalNames\n'
-    return ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + names + f"$Nodes\n{len(nodes)}\n" + "\n".join(nodes) + f"\n$EndNodes\n$Elements\n{len(elements)}\n" +
-            "\n".join(f"{k + 1} {e}" for k, e in enumerate(elements)) + "\n$EndElements\n")
-
-
-def mesh_file(text):
-    path = os.path.join(tempfile.mkdtemp(prefix="perideal_strangers_"), "part.msh")
-    with open(path, "w") as file:
-        file.write(text)
-    return path
+    return mesh_text(nodes, elements, ("left", "right", "bottom", "top", "slot"))
 
 
 def force(run, model):
@@ -117,7 +87,7 @@ def voids():
     # A mesh from a file.
     side = [0.5 * k / 20 for k in range(21)]
     ys = [0.49 * k / 20 for k in range(21)] + [0.51 + 0.49 * k / 20 for k in range(21)]
-    path = mesh_file(lines_of(side + [0.5 + 0.5 * k / 20 for k in range(1, 21)], ys, lambda x, y: not (x < 0.5 and 0.49 < y < 0.51)))
+    path = write_file("part.msh", lines_of(side + [0.5 + 0.5 * k / 20 for k in range(1, 21)], ys, lambda x, y: not (x < 0.5 and 0.49 < y < 0.51)))
     on_mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Material/Young modulus": "1000", "Material/Poisson ratio": "0.25",
                "Peridynamics/Horizon": "0.1", BC + "Displacement": "bottom: 0, 0 ; top: 0, 1e-3", "Output/Probes": "", "Models": f"{FE}, {PD}"}
     lattice = "  set Cells = 41, 41\n  set Holes = rectangle: 0, 0.49, 0.5, 0.51\n"
@@ -132,34 +102,20 @@ def voids():
     table.show()
 
 
-WALL = """
-set Dimension = 2
-set Models = finite elements, peridynamics, coupled
-subsection Domain
-  set Cells = 41, 10
-  set Upper corner = 1, 0.25
-end
-subsection Material
-  set Conductivity = 1
-  subsection Phases
-    set Regions      = left half: 0.5 - x
-    set Conductivity = left half: 5
-  end
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0 ; right: 1
-end
-subsection Cracks
-  set Segments = 0.5,-1 ; 0.5,2
-  set Contact conductance = 2
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-end
-"""
+WALL = scene_text("""
+Dimension = 2
+Models = finite elements, peridynamics, coupled
+Domain/Cells = 41, 10
+Domain/Upper corner = 1, 0.25
+Material/Conductivity = 1
+Material/Phases/Regions = left half: 0.5 - x
+Material/Phases/Conductivity = left half: 5
+Boundary conditions/Dirichlet = left: 0 ; right: 1
+Cracks/Segments = 0.5,-1 ; 0.5,2
+Cracks/Contact conductance = 2
+Time/Steady = true
+Output/Fields = none
+""")
 
 
 def contact():
@@ -182,70 +138,42 @@ def contact():
     table.show()
 
 
-BAR = """
-set Dimension = 1
-set Physics = elasticity
-subsection Domain
-  set Upper corner = 1
-  set Cells = 100
-end
-subsection Material
-  set Young modulus = 200e9
-end
-subsection Boundary conditions
-  set Displacement = left: 0
-  set Traction = right: 200e6
-end
-subsection Output
-  set Fields = none
-  set Probes = 1
-end
-"""
+BAR = scene_text("""
+Dimension = 1
+Physics = elasticity
+Domain/Upper corner = 1
+Domain/Cells = 100
+Material/Young modulus = 200e9
+Boundary conditions/Displacement = left: 0
+Boundary conditions/Traction = right: 200e6
+Output/Fields = none
+Output/Probes = 1
+""")
 
-GRIP = """
-set Dimension = 2
-set Physics = elasticity
-subsection Domain
-  set Upper corner = 1, 0.4
-  set Cells = 100, 40
-end
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.3
-end
-subsection Boundary conditions
-  set Parts = grip: region x < 0.025 ; back: point 1, 0.2
-  set Displacement = grip: free, 1e-3 ; back: 0, free
-end
-subsection Output
-  set Fields = none
-end
-"""
+GRIP = scene_text("""
+Dimension = 2
+Physics = elasticity
+Domain/Upper corner = 1, 0.4
+Domain/Cells = 100, 40
+Material/Young modulus = 1
+Material/Poisson ratio = 0.3
+Boundary conditions/Parts = grip: region x < 0.025 ; back: point 1, 0.2
+Boundary conditions/Displacement = grip: free, 1e-3 ; back: 0, free
+Output/Fields = none
+""")
 
-LATENT = """
-set Dimension = 1
-set Models = finite elements, peridynamics
-subsection Domain
-  set Upper corner = 1
-  set Cells = 40
-end
-subsection Material
-  set Heat capacity = 1 + if(abs(T) < 0.005, 100, 0)
-end
-subsection Initial and source
-  set Initial value = -0.01
-end
-subsection Boundary conditions
-  set Dirichlet = left: 1
-end
-subsection Time
-  set End time = 0.1
-end
-subsection Output
-  set Fields = none
-  set Probes = 0.1 ; 0.25 ; 0.4
-end
-"""
+LATENT = scene_text("""
+Dimension = 1
+Models = finite elements, peridynamics
+Domain/Upper corner = 1
+Domain/Cells = 40
+Material/Heat capacity = 1 + if(abs(T) < 0.005, 100, 0)
+Initial and source/Initial value = -0.01
+Boundary conditions/Dirichlet = left: 1
+Time/End time = 0.1
+Output/Fields = none
+Output/Probes = 0.1 ; 0.25 ; 0.4
+""")
 
 
 def enthalpies(n, end):
@@ -315,20 +243,17 @@ $EndElements
 def meshes():
     scene = HEAT.replace("set Cells = 41, 41", "set Shape = mesh file").replace("  set Holes = rectangle: 0, 0.49, 0.5, 0.51\n", "")
     settings = {"Models": FE, BC + "Dirichlet": "hot: 0", BC + "Flux": "wall: 1"}
-    run = run_scene(scene, {**settings, "Domain/Mesh file": mesh_file(SQUARE)})
+    run = run_scene(scene, {**settings, "Domain/Mesh file": write_file("part.msh", SQUARE)})
     check_close(run.model(FE)["boundary flux"]["wall"], 2, relative=1e-9, what="two groups of one name: both let in")
     turned = SQUARE.replace("3 1 1 0", "3 1 0 1").replace("4 0 1 0", "4 0 0 1")
-    refused = run_scene(scene, {**settings, "Domain/Mesh file": mesh_file(turned)}, expect_error=True)
+    refused = run_scene(scene, {**settings, "Domain/Mesh file": write_file("part.msh", turned)}, expect_error=True)
     check("plane of x and z" in refused.stderr, f"a mesh in the plane of x and z: {refused.stderr}")
     xs, ys = [0.25 * k for k in range(5)], [0.25 * k for k in range(5)]
     inner = lines_of(xs, ys, lambda x, y: True)
     inner = inner.replace("$Elements\n32\n", "$Elements\n33\n").replace("$EndElements", "33 1 2 7 7 2 3\n$EndElements")
-    run = run_scene(scene, {"Models": FE, BC + "Dirichlet": "left: 0 ; right: 1", "Domain/Mesh file": mesh_file(inner)})
+    run = run_scene(scene, {"Models": FE, BC + "Dirichlet": "left: 0 ; right: 1", "Domain/Mesh file": write_file("part.msh", inner)})
     check_close(run.model(FE)["boundary flux"]["right"], 1, relative=1e-9, what="a named line between two cells")
 
 
 if __name__ == "__main__":
-    parts = {function.__name__: function for function in (voids, contact, refusals, meshes)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish()
+    run_parts(voids, contact, refusals, meshes)

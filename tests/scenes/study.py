@@ -11,60 +11,35 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
-from scene_test import EXECUTABLE, SOURCE_DIR, check, check_close, finish, run_perideal, run_scene
+from scene_test import EXECUTABLE, SOURCE_DIR, check, check_close, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
 
-PLATE = """
-set Title = Small plate
-set Dimension = 2
-subsection Domain
-  set Cells = 12, 12
-end
-subsection Initial and source
-  set Initial value = sin(pi*x)*sin(pi*y)
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 0; bottom: 0; top: 0
-end
-subsection Time
-  set End time = 0.01
-end
-subsection Output
-  set Fields   = none
-  set Probes   = 0.5,0.5 ; 0.25,0.5
-  set Write at = 0.005, 0.01
-end
-subsection Reference
-  set Solution = sin(pi*x)*sin(pi*y)*exp(-2*pi^2*t)
-end
-"""
+PLATE = scene_text("""
+Title = Small plate
+Dimension = 2
+Domain/Cells = 12, 12
+Initial and source/Initial value = sin(pi*x)*sin(pi*y)
+Boundary conditions/Dirichlet = left: 0; right: 0; bottom: 0; top: 0
+Time/End time = 0.01
+Output/Fields = none
+Output/Probes = 0.5,0.5 ; 0.25,0.5
+Output/Write at = 0.005, 0.01
+Reference/Solution = sin(pi*x)*sin(pi*y)*exp(-2*pi^2*t)
+""")
 
-BAR = """
-set Title = Bar
-set Dimension = 1
-subsection Domain
-  set Cells = 40
-end
-subsection Peridynamics
-  set Horizon ratio = 4
-  set Kernel = constant
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 1
-end
-subsection Time
-  set Steady = true
-end
-subsection Output
-  set Fields = none
-end
-"""
+BAR = scene_text("""
+Title = Bar
+Dimension = 1
+Domain/Cells = 40
+Peridynamics/Horizon ratio = 4
+Peridynamics/Kernel = constant
+Boundary conditions/Dirichlet = left: 0; right: 1
+Time/Steady = true
+Output/Fields = none
+""")
 
 SWEEP = {"Domain/Cells": ["12, 12", "24, 24"], "Peridynamics/Horizon ratio": [2, 3]}
-FOLDERS = []
-
 # Columns that differ from run to run or with the number of processes.
 MEASURED = {"set-up time", "stepping time", "wall time", "peak memory", "memory", "processes"}
 
@@ -73,18 +48,14 @@ class Workshop:
     """A folder with two scenes, a study file, and its results."""
 
     def __init__(self, study):
-        self.folder = tempfile.mkdtemp(prefix="perideal_study_")
-        FOLDERS.append(self.folder)
+        self.folder = temporary_folder()
         self.write("plate.prm", PLATE)
         self.write("bar.prm", BAR)
         self.output = os.path.join(self.folder, "results")
         self.file = self.write("a study.json", study if isinstance(study, str) else json.dumps(study))
 
     def write(self, name, text):
-        path = os.path.join(self.folder, name)
-        with open(path, "w") as file:
-            file.write(text)
-        return path
+        return write_file(name, text, self.folder)
 
     def run(self, *options, ranks=1, expect=0):
         """Compute the study; returns (stdout, stderr)."""
@@ -468,12 +439,5 @@ def figures():
         check_close(-slope(lines[group]), order, absolute=0.05, what=f"order of {group}")
 
 
-def main():
-    parts = {part.__name__: part for part in (numbers, resume, failures, mistakes, ranks, figures)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish(*FOLDERS)
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(numbers, resume, failures, mistakes, ranks, figures)

@@ -8,11 +8,9 @@
 """
 
 import math
-import sys
 
-from scene_test import Comparison, check, finish, run_scene
+from scene_test import PD, Comparison, check, run_parts, run_scene
 
-PD = "peridynamics"
 SCENE = "prm/elasticity/completed_sides.prm"
 
 
@@ -165,5 +163,4 @@ def table():
 
 
 if __name__ == "__main__":
-    {"part": part, "halves": halves, "mesh": mesh, "table": table}[sys.argv[1]]()
-    finish()
+    run_parts(part, halves, mesh, table=table)

@@ -8,49 +8,33 @@ Bounds that follow from no theory are at most 1.5 times the gap that was measure
 """
 
 import math
-import sys
 
-from scene_test import Comparison, check, check_close, check_message, finish, run_scene
+from scene_test import FE, PD, Comparison, check, check_close, check_message, run_parts, run_scene, scene_text
 
-FEM, PD = "finite elements", "peridynamics"
 QUIET = {"Output/Fields": "none", "Solver/Tolerance": "1e-12"}
 SCENE = "prm/elasticity/thermal_stress.prm"
 
 # A plate 2 x 1 whose temperature is 100 at the left end and 300 at the right one; it is without
 # stress at 50.
-PLATE = """
-set Dimension = 2
-set Physics   = elasticity
-set Models    = finite elements, peridynamics
-subsection Domain
-  set Lower corner = 0, -0.5
-  set Upper corner = 2, 0.5
-  set Cells        = 40, 20
-end
-subsection Material
-  set Young modulus     = 200
-  set Poisson ratio     = 0.3
-  set Thermal expansion = 1e-5
-  set Conductivity      = 7
-end
-subsection Boundary conditions
-  set Displacement = left: -1e-5*100*y^2/2, 1e-5*50*y
-  set Dirichlet    = left: 100; right: 300
-end
-subsection Elasticity
-  set Temperature change    = computed
-  set Reference temperature = 50
-end
-subsection Time
-  set Steady = true
-end
-subsection Finite elements
-  set Degree = 2
-end
-subsection Output
-  set Probes = 1,0 ; 2,0 ; 2,0.5 ; 1.5,0.25
-end
-"""
+PLATE = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = finite elements, peridynamics
+Domain/Lower corner = 0, -0.5
+Domain/Upper corner = 2, 0.5
+Domain/Cells = 40, 20
+Material/Young modulus = 200
+Material/Poisson ratio = 0.3
+Material/Thermal expansion = 1e-5
+Material/Conductivity = 7
+Boundary conditions/Displacement = left: -1e-5*100*y^2/2, 1e-5*50*y
+Boundary conditions/Dirichlet = left: 100; right: 300
+Elasticity/Temperature change = computed
+Elasticity/Reference temperature = 50
+Time/Steady = true
+Finite elements/Degree = 2
+Output/Probes = 1,0 ; 2,0 ; 2,0.5 ; 1.5,0.25
+""")
 # What makes the same temperature of it by a formula.
 FORMULA = {"Elasticity/Temperature change": "50 + 100*x", "Elasticity/Reference temperature": "0", "Boundary conditions/Dirichlet": ""}
 CLAMPED = {"Boundary conditions/Displacement": "left: 0, 0"}
@@ -73,7 +57,7 @@ def free():
     for number, law in (("40, 20", "none"), ("80, 40", "none"), ("40, 20", "auto")):
         run = run_plate({"Domain/Cells": number, "Peridynamics/Surface correction": law})
         number += f" ({law})"
-        for model in (FEM, PD):
+        for model in (FE, PD):
             gaps, stresses = [], []
             for row in run.rows(model):
                 x, y = row["x"], row["y"]
@@ -101,7 +85,7 @@ def held():
                                                       ("plate", sides, "80, 40", -200 * alpha * 150 / 0.7, 1.3, ((1e-8, 7e-3), (1e-8, 7.9e-3)))):
         for cells, bound in (({}, bounds[0]), ({"Domain/Cells": finer}, bounds[1])):
             run = run_plate({**more, **cells})
-            for model in (FEM, PD):
+            for model in (FE, PD):
                 of_stress, of_place = [], []
                 for row in run.rows(model):
                     x = row["x"]
@@ -109,8 +93,8 @@ def held():
                         of_stress.append(abs(row["sxx"] / stress - 1))
                         of_place.append(abs(row["ux"] / (factor * alpha * slope / 2) - (x * x - 2 * x)))
                 name = f"{what} {cells.get('Domain/Cells', '')}, {model}"
-                table.add_limit(f"{name}: sxx, largest gap / stress", max(of_stress), 1e-10 if model == FEM else bound[0])
-                table.add_limit(f"{name}: ux, largest gap / that of the middle", max(of_place), 1e-10 if model == FEM else bound[1])
+                table.add_limit(f"{name}: sxx, largest gap / stress", max(of_stress), 1e-10 if model == FE else bound[0])
+                table.add_limit(f"{name}: ux, largest gap / that of the middle", max(of_place), 1e-10 if model == FE else bound[1])
     table.show()
 
 
@@ -174,7 +158,7 @@ def cooling():
     run = run_scene(SCENE, QUIET)
     most = YOUNG * EXPANSION * 100
     for t in (5, 30, 100, 400):
-        for model in (FEM, PD):
+        for model in (FE, PD):
             of_stress, of_temperature, crosswise = [], [], []
             for row in run.rows(model, time=t, table="line.csv"):
                 here, mean = cooled(row["x"], t)
@@ -189,7 +173,7 @@ def cooling():
 
 # Measured: 1.4e-5, 8.0e-4 (the end at the top), 3.1e-4; peridynamics 4.3e-4 (at 5 s, then 1.1e-4),
 # 3.3e-3, 2.7e-3 (on the face).
-COOLING = {FEM: (2.1e-5, 1.2e-3, 4.6e-4), PD: (6.5e-4, 4.9e-3, 4.1e-3)}
+COOLING = {FE: (2.1e-5, 1.2e-3, 4.6e-4), PD: (6.5e-4, 4.9e-3, 4.1e-3)}
 
 
 def strip():
@@ -199,7 +183,7 @@ def strip():
     run = run_scene(SCENE, {**QUIET, "Time/Steady": "true", "Output/Write at": "", "Initial and source/Source": str(source), "Boundary conditions/Convection": "",
                             "Boundary conditions/Dirichlet": "right: 20", "Elasticity/Reference temperature": "20"})
     top = source * HALF ** 2 / (2 * 1e-3)
-    for model in (FEM, PD):
+    for model in (FE, PD):
         of_stress, of_temperature = [], []
         for row in run.rows(model, table="line.csv"):
             here = top * (1 - (row["x"] / HALF) ** 2)
@@ -212,7 +196,7 @@ def strip():
 
 # Measured: 1.6e-13, 1.8e-3 (the end at the top); peridynamics 1.5e-4, 7.1e-3 on the side, where
 # families that end there are 0.13 off.
-STRIP = {FEM: (1e-12, 2.7e-3), PD: (2.1e-4, 1.1e-2)}
+STRIP = {FE: (1e-12, 2.7e-3), PD: (2.1e-4, 1.1e-2)}
 
 
 def ranks():
@@ -266,10 +250,5 @@ def torn():
         check_message(run_scene("prm/fracture/torn_strip.prm", more, expect_error=True), *words)
 
 
-def main():
-    for part in sys.argv[1:]:
-        {"free": free, "held": held, "formula": formula, "strip": strip, "cooling": cooling, "torn": torn, "ranks": ranks, "mistakes": mistakes}[part]()
-    finish()
-
-
-main()
+if __name__ == "__main__":
+    run_parts(free, held, formula, strip, cooling, torn, ranks, mistakes)

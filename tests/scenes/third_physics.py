@@ -12,10 +12,9 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
 
-from scene_test import MPIRUN, SOURCE_DIR, Run, check, check_clean_error, check_message, finish
-from scene_test import _environment, _folders
+from scene_test import MPIRUN, SOURCE_DIR, Run, check, check_clean_error, check_message, finish, temporary_folder
+from scene_test import _environment
 
 sys.path.insert(0, os.path.join(SOURCE_DIR, "tests", "reference"))
 
@@ -28,8 +27,7 @@ STEP = 0.0175  # divides the times of output
 
 def run(*overrides, ranks=1, folder=None):
     if folder is None:
-        folder = tempfile.mkdtemp(prefix="perideal_wave_")
-        _folders.append(folder)
+        folder = temporary_folder()
     words = [PROGRAM, SCENE, f"Output directory={folder}", f"Time/Time step={STEP}", *overrides]
     if ranks > 1:
         words = [MPIRUN, "-q", "--oversubscribe", "-np", str(ranks), *words]

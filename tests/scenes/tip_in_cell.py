@@ -5,10 +5,9 @@
 import math
 
 from intensities import tada_edge
-from scene_test import Comparison, finish, print_table, run_scene
+from scene_test import COUPLED, FE, PD, Comparison, finish, print_table, run_scene
 
 SCENE = "prm/elasticity/tip_in_cell.prm"
-FE, COUPLED, PD = "finite elements", "coupled", "peridynamics"
 PLACES = (0, 0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9)  # of the tip in its cell
 
 

@@ -5,12 +5,9 @@
     weak_layers.py bonds | coupled | table
 """
 
-import sys
-
-from scene_test import Comparison, finish, run_scene
+from scene_test import COUPLED, PD, Comparison, run_parts, run_scene
 
 SCENE = "prm/fracture/double_cantilever.prm"
-PD, COUPLED = "peridynamics", "coupled"
 QUIET = {"Output/Fields": "none", "Output/Write at": "", "Time/Time step": "0.05"}
 STRONG = {"Material/Fracture energy": "0.1"}
 
@@ -58,5 +55,4 @@ def table():
 
 
 if __name__ == "__main__":
-    {"bonds": bonds, "coupled": coupled, "table": table}[sys.argv[1]]()
-    finish()
+    run_parts(bonds, coupled, table=table)

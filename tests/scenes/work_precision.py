@@ -6,44 +6,30 @@
 """
 
 import csv
+import functools
 import json
 import math
 import os
 import re
 import subprocess
 import sys
-import tempfile
 
-from scene_test import SOURCE_DIR, check, check_close, check_less, finish, run_perideal
+from scene_test import SOURCE_DIR, check, check_close, check_less, run_parts, run_perideal, scene_text, temporary_folder, write_file
 
-PLATE = """
-set Title = Small plate with a crack
-set Dimension = 2
-subsection Domain
-  set Lower corner = -1, -1
-  set Upper corner = 1, 1
-  set Cells = 17, 17
-end
-subsection Boundary conditions
-  set Dirichlet = top: 1; bottom: -1
-end
-subsection Cracks
-  set Segments = -0.5,0 ; 0.5,0
-end
-subsection Time
-  set Steady = true
-end
-"""
+PLATE = scene_text("""
+Title = Small plate with a crack
+Dimension = 2
+Domain/Lower corner = -1, -1
+Domain/Upper corner = 1, 1
+Domain/Cells = 17, 17
+Boundary conditions/Dirichlet = top: 1; bottom: -1
+Cracks/Segments = -0.5,0 ; 0.5,0
+Time/Steady = true
+""")
 
-FOLDER = tempfile.mkdtemp(prefix="perideal_work_")
+FOLDER = temporary_folder()
+write = functools.partial(write_file, folder=FOLDER)
 SMALL = ["--cells", "9, 9 | 17, 17", "--budget", "8000"]
-
-
-def write(name, text):
-    path = os.path.join(FOLDER, name)
-    with open(path, "w") as file:
-        file.write(text)
-    return path
 
 
 def study(scene, *options, output="results", ranks=1, expect=0):
@@ -361,12 +347,5 @@ def ranks():
         check(abs(a["iterations"] - b["iterations"]) <= 3, f"{a['name']}: {a['iterations']} and {b['iterations']} iterations")
 
 
-def main():
-    parts = {part.__name__: part for part in (front, exact, body, smooth, in_time, motion, measures, mistakes, ranks)}
-    for name in sys.argv[1:] or parts:
-        parts[name]()
-    finish(FOLDER)
-
-
 if __name__ == "__main__":
-    main()
+    run_parts(front, exact, body, smooth, in_time, motion, measures, mistakes, ranks)

@@ -6,6 +6,7 @@
 #include <perideal/bonds/point_bins.h>
 #include <perideal/mesh/nodes.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <vector>
@@ -22,9 +23,47 @@ namespace PeriDeal
   };
 
 
+  /** A segment (2D) or triangle (3D) of the boundary of a mesh. */
+  template <int dim>
+  struct BoundaryFacet
+  {
+    std::array<dealii::types::global_dof_index, dim> nodes; // on the corners, or 0
+    std::array<dealii::Point<dim>, dim>              corners;
+    dealii::Tensor<1, dim>                           normal; // outwards
+    double                                           area;
+    dealii::types::boundary_id                       side;
+
+    /** Weights of the corners in the point of it that is nearest to p. */
+    std::array<double, dim> nearest_weights(const dealii::Point<dim> &p) const;
+
+    dealii::Point<dim> at(const std::array<double, dim> &weights) const;
+  };
+
   /**
-   * The boundary of a mesh but for its planes of symmetry, as segments (2D) or triangles (3D)
-   * between nodes on its vertices; all of it is known to each process.
+   * All of the boundary, on each process, in an order that does not depend on who owns what; with
+   * nodes where they are those of vertices. Collective.
+   */
+  template <int dim>
+  std::vector<BoundaryFacet<dim>> gather_boundary_facets(const Nodes<dim> &nodes);
+
+  /** Numbers of facets, so that visit_near() finds all that come within the reach of a point. */
+  template <int dim, typename Facet>
+  PointBins<dim> bins_of_facets(const std::vector<Facet> &facets, const double reach)
+  {
+    double size = 0.; // of the largest
+    for (const Facet &facet : facets)
+      for (const dealii::Point<dim> &corner : facet.corners)
+        size = std::max(size, corner.distance(facet.corners[0]));
+    PointBins<dim> bins(reach + size);
+    for (unsigned int f = 0; f < facets.size(); ++f)
+      bins.add(facets[f].corners[0], f);
+    return bins;
+  }
+
+
+  /**
+   * The boundary of a mesh but for its planes of symmetry, as facets between nodes on its vertices;
+   * all of it is known to each process.
    */
   template <int dim>
   class BoundaryFacets
@@ -87,25 +126,18 @@ namespace PeriDeal
     double growth(const Foot &foot) const;
 
   private:
-    struct Facet
+    struct Facet : BoundaryFacet<dim>
     {
-      std::array<dealii::types::global_dof_index, dim> nodes;
-      std::array<dealii::Point<dim>, dim>              corners;
-      std::array<dealii::Tensor<1, dim>, dim>          corner_normals;
-      dealii::Tensor<1, dim>                           normal;
-      double                                           area;
-      dealii::types::boundary_id                       side;
-      bool                                             goes_on;
+      bool                                    goes_on;
+      std::array<dealii::Tensor<1, dim>, dim> corner_normals;
     };
 
-    void gather(const Nodes<dim>                                            &nodes,
-                const std::function<bool(const dealii::types::boundary_id)> &goes_on);
     void take_out_planes(const std::vector<dealii::types::boundary_id> &symmetry);
     void find_corner_normals();
     Foot foot_on(const dealii::Point<dim> &p, const unsigned int facet) const;
     bool is_lowest(const dealii::Point<dim> &p, const Foot &foot) const;
 
-    double                                 reach, size = 0.; // of the largest facet
+    double                                 reach;
     std::vector<Facet>                     facets;
     std::vector<SymmetryPlane>             symmetry_planes;
     PointBins<dim>                         bins;
