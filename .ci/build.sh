@@ -45,7 +45,11 @@ configure()
     local fresh=""
     if [ -f "$build/CMakeCache.txt" ]; then
         grep -q -x -F "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt" || fresh=--fresh
-        [ -f "$build/build.ninja" ] && [ -z "$fresh" ] && return 0
+        local found
+        found=$(sed -n 's/^deal\.II_DIR:PATH=//p' "$build/CMakeCache.txt")
+        case "$found/" in
+        "${DEAL_II_DIR:-}"*) [ -f "$build/build.ninja" ] && [ -z "$fresh" ] && return 0 ;;
+        esac
     fi
     mkdir -p "$build"
     echo "Configuring ..."

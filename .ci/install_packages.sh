@@ -31,6 +31,9 @@ python3-matplotlib: pictures of the report
 python3-h5py: HDF5 files in Python
 libjs-chart.js: charts in the page of a study whose points tell their names"
 
+# A deal.II of one's own takes the place of Debian's.
+[ -n "${DEAL_II_DIR:-}" ] && packages=$(echo "$packages" | grep -v '^libdeal.ii-dev:')
+
 if [ "${1:-}" = --list ]; then
     echo "$packages"
     exit 0

@@ -7,7 +7,26 @@
 # after their own flags. The debug and the release library of deal.II differ in the layout of classes, so the
 # choice is made once, when PeriDeal is built, and PeriDealConfig.cmake repeats it: PeriDeal_DEAL_II_BUILD is RELEASE or DEBUG.
 
-find_package(deal.II 9.4 QUIET REQUIRED CONFIG HINTS ${DEAL_II_DIR} $ENV{DEAL_II_DIR})
+# A deal.II of one's own: the variable, or that of the environment. It is this one or none.
+set(perideal_deal_ii "${DEAL_II_DIR}")
+if(NOT perideal_deal_ii)
+  set(perideal_deal_ii "$ENV{DEAL_II_DIR}")
+endif()
+if(perideal_deal_ii)
+  get_filename_component(perideal_deal_ii "${perideal_deal_ii}" ABSOLUTE)
+  string(FIND "${deal.II_DIR}/" "${perideal_deal_ii}/" perideal_place)
+  if(NOT perideal_place EQUAL 0)
+    unset(deal.II_DIR CACHE) # that of an earlier configuration
+  endif()
+  find_package(deal.II 9.4 QUIET CONFIG PATHS ${perideal_deal_ii} NO_DEFAULT_PATH)
+  if(NOT deal.II_FOUND)
+    message(FATAL_ERROR "DEAL_II_DIR is ${perideal_deal_ii}, where no deal.II 9.4 or newer is (deal.IIConfig.cmake). "
+                        "Correct it, or unset it to take the deal.II of the system.")
+  endif()
+else()
+  find_package(deal.II 9.4 QUIET REQUIRED CONFIG)
+endif()
+message(STATUS "deal.II ${DEAL_II_PACKAGE_VERSION}: ${DEAL_II_PATH}")
 foreach(feature MPI P4EST TRILINOS HDF5 MUPARSER)
   if(NOT DEAL_II_WITH_${feature})
     message(FATAL_ERROR "The deal.II in ${DEAL_II_PATH} was built without ${feature}, which PeriDeal needs.")
