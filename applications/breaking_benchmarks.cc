@@ -41,8 +41,8 @@ namespace PeriDeal
              "\nend\nsubsection Peridynamics\nset Horizon ratio = " + m +
              "\nset Operator form = " + form +
              "\nset Surface correction = none" // as LAMMPS has it
-             "\nend\nsubsection Elasticity\nset Solver = dynamics\nset Kinematics = " + kinematics +
-             "\nend\nsubsection Time\nset End time = 1\nend\n";
+             "\nend\nsubsection Elasticity\nset Solver = dynamics\nset Kinematics = " +
+             kinematics + "\nend\nsubsection Time\nset End time = 1\nend\n";
     }
 
 

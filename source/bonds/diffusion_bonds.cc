@@ -14,8 +14,9 @@ namespace PeriDeal
     , material(topology,
                body.material,
                body.initial_and_source.initial_value,
-               body.material.uniform_conductivity() ? typename BondConductivities<dim>::SidePoints() :
-                                                      families.cracks().side_points())
+               body.material.uniform_conductivity() ?
+                 typename BondConductivities<dim>::SidePoints() :
+                 families.cracks().side_points())
     , node_factors(topology)
     , corrects_all(body.peridynamics.surface_correction == SurfaceCorrection::energy)
   {}

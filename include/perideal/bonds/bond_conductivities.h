@@ -56,7 +56,7 @@ namespace PeriDeal
     const bool            all_alike;
     std::vector<double>   values; // of nodes, or the one
 
-    SidePoints            moved;
+    SidePoints moved;
 
     double harmonic(const unsigned int node, const unsigned int neighbor) const;
     double at(const unsigned int node, const double T) const;
