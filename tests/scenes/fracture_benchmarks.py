@@ -75,13 +75,13 @@ def impact():
 
 
 def space():
-    """In the setting of CabanaPD's regression test the furthest damaged node is where it has it, to a spacing."""
+    """In the setting of CabanaPD's regression test the furthest damaged node is near where it has it."""
     table = Comparison("Kalthoff and Winkler in space, CabanaPD's setting")
     run = run_scene("prm/fracture/kalthoff_winkler_3d.prm", FIELDS)
     check_balances(run, "kalthoff_winkler_3d")
     nodes, damage = measures.nodes_and_damage(measures.Result(run.folder))
     for side in (1, -1):
-        table.add(f"furthest damage above 0.35, side {side} (mm)", 1e3 * (side * nodes[damage > measures.SHOWN, 1]).max(), 74.2, absolute=8)  # measured: 81.5 (77.5 with Surface correction = none); a spacing is 1.32
+        table.add(f"furthest damage above 0.35, side {side} (mm)", 1e3 * (side * nodes[damage > measures.SHOWN, 1]).max(), 74.2, absolute=5.2)  # measured: 77.5; a spacing is 1.32
     table.show()
 
 
