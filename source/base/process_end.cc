@@ -130,7 +130,7 @@ namespace PeriDeal
       stop_signal = signal;
       say("\nperideal: stopping, by ");
       say(name_of_request(signal));
-      if (signal == SIGTERM && now - woken.load() <= 1)
+      if (signal == SIGTERM && now - woken.load() <= same_moment)
         {
           expect_to_be_killed();
           say(" of the launcher ...\n");

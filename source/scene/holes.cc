@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace PeriDeal
 {
@@ -59,6 +60,47 @@ namespace PeriDeal
       return hole;
     }
 
+
+    /** The hole with the rim nearest to a point, of the rims that lie in no other hole there. */
+    const Hole &hole_nearest_to(const Point<2> &p, const std::vector<Hole> &holes)
+    {
+      const auto hidden_and_far = [&](const Hole &hole) {
+        const Point<2> foot = hole.point_on_rim(hole.place_on_rim(p));
+        return std::make_pair(
+          std::any_of(holes.begin(),
+                      holes.end(),
+                      [&](const Hole &other) { return &other != &hole && other.contains(foot); }),
+          std::abs(hole.distance(p)));
+      };
+      return *std::min_element(holes.begin(), holes.end(), [&](const Hole &one, const Hole &other) {
+        return hidden_and_far(one) < hidden_and_far(other);
+      });
+    }
+
+
+    /**
+     * Where the rim of a hole enters another one, along it from what is nearest to a point, in the
+     * nearer direction and within a distance; the point if it does not.
+     */
+    Point<2> entry_from(const Point<2> &a, const Hole &hole, const Hole &other, const double within)
+    {
+      constexpr int n     = 64;
+      const double  start = hole.place_on_rim(a);
+      for (int k = 1; k <= n; ++k)
+        for (const double direction : {1., -1.})
+          if (double outside = (k - 1) * within / n, inside = k * within / n;
+              other.contains(hole.point_on_rim(start + direction * inside)))
+            {
+              for (int halving = 0; halving < 50; ++halving)
+                {
+                  const double middle = 0.5 * (outside + inside);
+                  const bool is_in = other.contains(hole.point_on_rim(start + direction * middle));
+                  (is_in ? inside : outside) = middle;
+                }
+              return hole.point_on_rim(start + direction * outside);
+            }
+      return a;
+    }
   } // namespace
 
 
@@ -139,6 +181,21 @@ namespace PeriDeal
         before += edge.norm();
       }
     return place;
+  }
+
+
+  Point<2> Hole::point_on_rim(const double place) const
+  {
+    if (corners.empty())
+      return center + radius * Point<2>(std::cos(place / radius), std::sin(place / radius));
+    double rest = place - std::floor(place / rim_length()) * rim_length();
+    for (std::size_t i = 0;; ++i)
+      {
+        const Tensor<1, 2> edge = corners[(i + 1) % corners.size()] - corners[i];
+        if (rest <= edge.norm() || i + 1 == corners.size())
+          return corners[i] + rest / edge.norm() * edge;
+        rest -= edge.norm();
+      }
   }
 
 
@@ -240,17 +297,16 @@ namespace PeriDeal
           return 1.;
         // In the plane of the holes a face is a line.
         const Point<2> a(face.front()[0], face.front()[1]), b(face.back()[0], face.back()[1]);
-        const Point<2> middle(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]));
-        const auto     nearest =
-          std::min_element(holes.begin(), holes.end(), [&](const Hole &one, const Hole &other) {
-            return std::abs(one.distance(middle)) < std::abs(other.distance(middle));
-          });
-        const double length = a.distance(b), tiny = 1e-9 * length;
+        const double   length = a.distance(b), tiny = 1e-9 * length;
+        const Hole    &first = hole_nearest_to(a, holes), &last = hole_nearest_to(b, holes);
         if (!(length > 0.) ||
-            (std::abs(nearest->distance(a)) < tiny && std::abs(nearest->distance(b)) < tiny &&
-             std::abs(nearest->distance(middle)) < tiny))
+            (std::abs(first.distance(a)) < tiny && std::abs(last.distance(b)) < tiny &&
+             std::abs(first.distance(a + 0.5 * (b - a))) < tiny))
           return 1.;
-        return nearest->rim_between(a, b) / length;
+        if (&first == &last)
+          return first.rim_between(a, b) / length;
+        const Point<2> joint = entry_from(a, first, last, 4. * length);
+        return (first.rim_between(a, joint) + last.rim_between(joint, b)) / length;
       }
     return 1.;
   }

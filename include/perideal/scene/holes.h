@@ -32,9 +32,13 @@ namespace PeriDeal
     /** Length of the rim between the two of its points that are nearest to two others. */
     double rim_between(const dealii::Point<2> &a, const dealii::Point<2> &b) const;
 
-  private:
-    /** Along the rim, from its first point to the nearest one. */
+    /** Along the rim, from its first point to the one nearest to another. */
     double place_on_rim(const dealii::Point<2> &p) const;
+
+    /** At a place along the rim, which may go around more than once. */
+    dealii::Point<2> point_on_rim(const double place) const;
+
+  private:
     double rim_length() const;
   };
 
@@ -68,7 +72,7 @@ namespace PeriDeal
     /**
      * A hole of a lattice has stairs in place of its rim. What of the true rim a face stands for,
      * over the area of the face: what acts on the rim acts by that. Faces around a hole have the
-     * area of its rim together; those on the rim have 1.
+     * area of its rim together, without what of it lies in another hole; those on the rim have 1.
      * @param corners of the face of a cell
      */
     double rim_over_face(const std::vector<dealii::Point<dim>> &corners) const;
