@@ -4,7 +4,6 @@
 // Exact solutions: the series of the papers against the equation they solve, and the decay rates of
 // waves.
 
-#include <perideal/analysis/convergence.h>
 #include <perideal/analysis/decay_rate.h>
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/analysis/heat_series.h>
@@ -353,19 +352,4 @@ TEST(ExactSolution, ExpressionsAndMistakes)
   EXPECT_NE(error_of("bobaru 2012 example 2(1)", context).find("no arguments"), std::string::npos);
   EXPECT_NE(error_of("bobaru 2012 example 1", box({0.}, {1.}, 1.)).find("two-dimensional"),
             std::string::npos);
-}
-
-
-TEST(Convergence, OrdersAndDifferences)
-{
-  const std::vector<double> sizes{{0.4, 0.2, 0.1}}, errors{{0.48, 0.12, 0.03}};
-  EXPECT_NEAR(observed_order(0.4, 0.48, 0.2, 0.12), 2., 1e-14);
-  EXPECT_EQ(observed_orders(sizes, errors).size(), 2u);
-  EXPECT_NEAR(least_squares_order(sizes, errors), 2., 1e-14);
-  EXPECT_NEAR(least_squares_order({1., 2., 4.}, {1., 1., 4.}), 1., 1e-14); // slopes 0 and 2
-  EXPECT_NEAR(relative_l2_difference({3., 4.}, {3., 4.5}), 0.1, 1e-15);
-  EXPECT_NEAR(scaled_relative_difference({2., 4.}, {2.6, 4.8 - 1.6}),
-              std::sqrt(0.09 + 0.04) / 2.,
-              1e-15);
-  EXPECT_NEAR(scaled_relative_difference({2., 0.}, {2.6, 7.}), 0.3, 1e-15);
 }
