@@ -113,7 +113,7 @@ def cantilever():
     late = [row for row in growth if row[0] > 0.599]
     check(late[-1][1] - late[0][1] > 0.15, f"the crack grows from {late[0][1]} to {late[-1][1]}")
     check(max(b[1] - a[1] for a, b in zip(late, late[1:])) < 0.03, "the crack grows bit by bit")
-    # Measured: 1.14 and, in the mean, 1.12 of the fracture energy, whose roots are 1.07 and 1.06
+    # Measured: 1.105 and, in the mean, 1.091 of the fracture energy, whose roots are 1.05 and 1.04
     # of Griffith's load.
     rate = (late[-1][3] - late[0][3]) / (late[-1][1] - late[0][1])
     table.add("energy dissipated per length over the fracture energy", rate / ENERGY, 1, absolute=0.32)
