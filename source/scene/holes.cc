@@ -231,7 +231,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Holes<dim>::rim_over_face(const std::vector<Point<dim>> &face) const
+  double Holes<dim>::rim_over_face(const Point<dim> &first, const Point<dim> &last) const
   {
     if constexpr (dim > 1)
       {
@@ -239,7 +239,7 @@ namespace PeriDeal
         if (holes.empty())
           return 1.;
         // In the plane of the holes a face is a line.
-        const Point<2> a(face.front()[0], face.front()[1]), b(face.back()[0], face.back()[1]);
+        const Point<2> a(first[0], first[1]), b(last[0], last[1]);
         const Point<2> middle(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]));
         const auto     nearest =
           std::min_element(holes.begin(), holes.end(), [&](const Hole &one, const Hole &other) {
