@@ -48,7 +48,7 @@ configure()
         local found
         found=$(sed -n 's/^deal\.II_DIR:PATH=//p' "$build/CMakeCache.txt")
         case "$found/" in
-        "${DEAL_II_DIR:-}"*) [ -f "$build/build.ninja" ] && [ -z "$fresh" ] && return 0 ;;
+        "${DEAL_II_DIR:+${DEAL_II_DIR%/}/}"*) [ -f "$build/build.ninja" ] && [ -z "$fresh" ] && return 0 ;;
         esac
     fi
     mkdir -p "$build"

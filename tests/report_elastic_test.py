@@ -23,6 +23,7 @@ import difference
 import elastic_findings
 import elastic_tables
 import fragments
+import loading
 import materials
 import sketch
 import style
@@ -399,6 +400,14 @@ class Broken(ReportCase):
             self.assertIn(figure, {p.stem for p in figures.iterdir()})
         self.assertIn("the path from the end of a crack to its tip", text)
         self.assertNotIn("damage_0000", {p.stem for p in figures.iterdir()})  # the start is for films
+
+    def test_forces_that_cancel(self):
+        """No sentence and no curve of the force on a side whose two arms are pushed apart: it is round-off."""
+        make_broken(self.directory)
+        run = Run(self.directory)
+        self.assertTrue(loading.forces(run)[0])
+        run.summary["models"][PD]["force balance"] = {"scale": 1e10 * max(abs(f.peak()[1]) for f in loading.forces(run)[0])}
+        self.assertEqual(loading.forces(run), ([], []))
 
     def test_film(self):
         make_broken(self.directory)

@@ -24,6 +24,7 @@ ENERGIES = {WORK: ("#000000", (0, (4, 2))), "strain energy": ("#0072b2", "-"),
             "kinetic energy": ("#009e73", "-"), DISSIPATED: ("#d55e00", "-")}
 SIDE_COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 ROUND_OFF = 1e-6  # of solvers: forces of two sides that agree to this are equal and opposite
+SMALL = 1e-9  # of the size of forces in the body (summary.json, `force balance`): round-off
 FEW = 45  # up to so many points are marked
 
 
@@ -105,14 +106,13 @@ def forces(run):
 
     Where none of them ever changes, no force is among the first.
 
-    Where no side is loaded (a body force, an initial velocity), those on all sides.
+    Where no side is loaded (a body force, an initial velocity), those on all sides. What is round-off beside the size of forces in
+    the body, as where two arms cancel, is none.
     """
-    sides = run.sides()
-    for loaded in (True, False):
-        found = [f for f in (largest_component(run, s, c) for s, c in sides.items()
-                             if is_loaded(c) or not loaded) if f is not None]
-        if found:
-            break
+    sides = [f for s, c in run.sides().items() if (f := largest_component(run, s, c)) is not None]
+    scale = max(((run.summary["models"][m].get("force balance") or {}).get("scale", 0) for m in run.models), default=0)
+    real = [f for f in sides if abs(f.peak()[1]) > SMALL * scale]
+    found = [f for f in real if is_loaded(f.condition)] or real
     shown, opposite = [], []
     for force in sorted(found, key=lambda f: f.peak()[1] < 0):  # a pull, rather than its support
         mirrored = any(force.is_opposite(other) for other in shown)

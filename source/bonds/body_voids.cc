@@ -2,11 +2,13 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/bonds/body_voids.h>
+#include <perideal/bonds/bond_pieces.h>
 #include <perideal/bonds/boundary_facets.h>
 #include <perideal/mesh/mesh_builder.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -167,36 +169,19 @@ namespace PeriDeal
         return domain.has_cell_at(center_of(cell));
       }
 
-      /**
-       * The parts of a way between two sites, which lie on vertices or in the middle of cells:
-       * those between two crossings of lattice planes.
-       */
-      std::vector<Part> way_along(const Index &offset) const
+      /** Between sites in the middle of cells lie those of a lattice of half cells. */
+      std::vector<Part> way_along(Index offset) const
       {
-        const double        shift = lattice.at_centers ? 0.5 : 0.; // of the site in its cell
-        std::vector<double> crossings{0., 1.};
-        for (unsigned int d = 0; d < dim; ++d)
-          for (int k = 1; k <= std::abs(offset[d]); ++k)
-            crossings.push_back((k - shift) / std::abs(offset[d]));
-        std::sort(crossings.begin(), crossings.end());
-        constexpr double  slack = 1e-7;
         std::vector<Part> parts;
-        for (std::size_t k = 1; k < crossings.size(); ++k)
+        for (int &steps : offset)
+          steps *= lattice.at_centers ? 2 : 1;
+        for (BondPiece<dim> &piece : bond_pieces<dim>(offset))
           {
-            if (crossings[k] - crossings[k - 1] < slack || crossings[k - 1] > 1. - slack)
-              continue;
-            const double s = 0.5 * (crossings[k] + crossings[k - 1]);
-            Part         part;
-            for (unsigned int side = 0; side < (1u << dim); ++side)
-              {
-                Index cell;
-                for (unsigned int d = 0; d < dim; ++d)
-                  cell[d] = static_cast<int>(
-                    std::floor(shift + s * offset[d] + ((side >> d) & 1 ? slack : -slack)));
-                if (std::find(part.begin(), part.end(), cell) == part.end())
-                  part.push_back(cell);
-              }
-            parts.push_back(part);
+            for (Index &cell : piece.cells)
+              for (int &place : cell)
+                if (lattice.at_centers) // the site is a vertex of half cells, the first
+                  place = (place + 1 - ((place + 1) & 1)) / 2;
+            parts.push_back(std::move(piece.cells));
           }
         return parts;
       }

@@ -67,16 +67,6 @@ namespace PeriDeal
   }
 
 
-  BondState::Numbering BondState::by_starts(const std::vector<std::size_t> &starts)
-  {
-    return {[&starts](const std::size_t number) -> std::size_t {
-              return std::upper_bound(starts.begin(), starts.end(), number) - starts.begin() - 1;
-            },
-            [&starts](const std::size_t node) { return starts[node]; },
-            [&starts]() { return starts.back(); }};
-  }
-
-
   std::vector<BondState::Kept> BondState::exchange(Archive          &archive,
                                                    const Numbering  &numbering,
                                                    const NodeKeys   &keys,

@@ -3,8 +3,8 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/msh_check.h>
+#include <perideal/scene/physical_names.h>
 
-#include <algorithm>
 #include <iomanip>
 #include <map>
 #include <set>
@@ -71,17 +71,10 @@ namespace PeriDeal
       const std::size_t          begin = text.find("$PhysicalNames");
       if (begin == std::string::npos)
         return same;
-      std::istringstream lines(text.substr(begin, text.find("$EndPhysicalNames", begin) - begin));
-      for (std::string line; std::getline(lines, line);)
-        {
-          std::istringstream words(line);
-          unsigned int       of_dim = 0;
-          int                id     = -1;
-          const std::size_t  from = line.find('"'), to = line.rfind('"');
-          if (words >> of_dim >> id && of_dim + 1 == dim && id >= 0 && from < to)
-            if (const auto found = first.emplace(line.substr(from, to - from), id); !found.second)
-              same[id] = found.first->second;
-        }
+      const std::size_t end = text.find("$EndPhysicalNames", begin);
+      for (const auto &[name, id] : named_sides(text.substr(begin, end - begin), dim))
+        if (const auto found = first.emplace(name, id); !found.second)
+          same[id] = found.first->second;
       return same;
     }
 

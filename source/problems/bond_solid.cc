@@ -118,9 +118,9 @@ namespace PeriDeal
                                                          von_mises(stress[i]);
             columns.push_back(reader.evaluate(values));
           }
-        const std::vector<double>     change = changes_at_points(reader);
-        const VelocitiesAtPoints<dim> velocities(scene, reader, this->velocity);
-        std::vector<double>           rows;
+        const std::vector<double> change     = changes_at_points(reader);
+        const auto                velocities = velocities_at_points(scene, reader, this->velocity);
+        std::vector<double>       rows;
         for (std::size_t k = 0; k < points.size(); ++k)
           {
             double                values[dim];
@@ -133,7 +133,8 @@ namespace PeriDeal
             rows.back() = columns.back()[k];
             if (!change.empty())
               rows.push_back(change[k] + scene.elasticity.reference_temperature);
-            velocities.append_to(rows, k);
+            for (const std::vector<double> &component : velocities)
+              rows.push_back(component[k]);
           }
         return rows;
       }

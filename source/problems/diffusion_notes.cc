@@ -65,11 +65,8 @@ namespace PeriDeal
         }
       return cut;
     }
-  } // namespace
 
 
-  namespace
-  {
     /**
      * How many spacings longer (or shorter) a body seems between two opposite sides with given
      * values, which the outermost rows of nodes have: by a chain of rows.

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <sstream>
-#include <tuple>
 
 #include "diffusion_guards.h"
 #include "diffusion_notes.h"
@@ -285,26 +284,25 @@ namespace PeriDeal
         return n_solves * 20. * 6. * time_of_application(op());
       }
     const std::string bounds = describe_stable_steps(op().spectrum());
-    double            n = expected_applications(times), n_steps = 0.,
-           time = n > 0. ? n * time_of_application(op()) : -1.;
+    StepForecast      run{0., expected_applications(times), -1.};
     if (op().depends_on_solution())
-      {
-        const StepForecast forecast(
-          scene.time.end_time,
-          [&](const AfterStep &then) { advance_through_events(scene.time.end_time, then); },
-          op(),
-          this->dofs().get_communicator());
-        std::tie(n_steps, n, time) = forecast.all();
-      }
+      run = forecast_steps(
+        scene.time.end_time,
+        [&](const AfterStep &then) { advance_through_events(scene.time.end_time, then); },
+        op(),
+        this->dofs().get_communicator());
+    else if (run.applications > 0.)
+      run.time = run.applications * time_of_application(op());
     if (!says)
-      return time;
+      return run.time;
     context.progress.line(bounds + "\n  stepper: " + stepper->name());
-    const std::string steps = n_steps > 0. ? readable_count(std::llround(n_steps)) + " steps, " :
-                                             "";
-    if (n > 0.)
-      context.progress.line("  estimated: " + steps + readable_count(std::llround(n)) +
-                            " operator applications, " + readable_duration(time));
-    return time;
+    if (run.applications > 0.)
+      context.progress.line(
+        "  estimated: " +
+        (run.n_steps > 0. ? readable_count(std::llround(run.n_steps)) + " steps, " : "") +
+        readable_count(std::llround(run.applications)) + " operator applications, " +
+        readable_duration(run.time));
+    return run.time;
   }
 
 

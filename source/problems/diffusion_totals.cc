@@ -42,6 +42,8 @@ namespace PeriDeal
       return std::max(Utilities::MPI::sum(apart, communicator),
                       least * Utilities::MPI::sum(all, communicator));
     }
+
+
     /** Hardly any of the heat that passes changes the temperature anywhere. Collective. */
     template <int dim>
     bool is_steady(DiffusionProblem<dim> &problem, const double throughput, const double t)

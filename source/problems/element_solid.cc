@@ -123,8 +123,8 @@ namespace PeriDeal
             changes.push_back(reader.is_gap(k) ? 0. :
                                                  scene.elasticity.temperature_change.value(
                                                    reader.inner_points()[k]));
-        const VelocitiesAtPoints<dim> velocities(scene, reader, this->velocity);
-        std::vector<double>           rows;
+        const auto          velocities = velocities_at_points(scene, reader, this->velocity);
+        std::vector<double> rows;
         for (std::size_t k = 0; k < points.size(); ++k)
           {
             if (reader.is_gap(k)) // where the material may have no moduli
@@ -148,7 +148,8 @@ namespace PeriDeal
               rows);
             if (scene.elasticity.computes_temperature)
               rows.push_back(changes[k] + scene.elasticity.reference_temperature);
-            velocities.append_to(rows, k);
+            for (const std::vector<double> &component : velocities)
+              rows.push_back(component[k]);
           }
         return rows;
       }

@@ -34,24 +34,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  VelocitiesAtPoints<dim>::VelocitiesAtPoints(const Scene<dim>          &scene,
-                                              const PointEvaluator<dim> &reader,
-                                              const Vector              &velocity)
+  std::vector<std::vector<double>> velocities_at_points(const Scene<dim>          &scene,
+                                                        const PointEvaluator<dim> &reader,
+                                                        const Vector              &velocity)
   {
+    std::vector<std::vector<double>> components;
     if (scene.elasticity.is_static())
-      return;
+      return components;
     Vector with_ghosts(velocity);
     with_ghosts.update_ghost_values();
     for (unsigned int d = 0; d < dim; ++d)
       components.push_back(reader.evaluate(with_ghosts, dim, d));
-  }
-
-
-  template <int dim>
-  void VelocitiesAtPoints<dim>::append_to(std::vector<double> &rows, const std::size_t point) const
-  {
-    for (const std::vector<double> &component : components)
-      rows.push_back(component[point]);
+    return components;
   }
 
 
@@ -70,10 +64,16 @@ namespace PeriDeal
   }
 
 
-  template class VelocitiesAtPoints<1>;
-  template class VelocitiesAtPoints<2>;
-  template class VelocitiesAtPoints<3>;
-  template std::vector<std::string> solid_columns(const Scene<1> &);
-  template std::vector<std::string> solid_columns(const Scene<2> &);
-  template std::vector<std::string> solid_columns(const Scene<3> &);
+  template std::vector<std::string>         solid_columns(const Scene<1> &);
+  template std::vector<std::string>         solid_columns(const Scene<2> &);
+  template std::vector<std::string>         solid_columns(const Scene<3> &);
+  template std::vector<std::vector<double>> velocities_at_points(const Scene<1> &,
+                                                                 const PointEvaluator<1> &,
+                                                                 const Vector &);
+  template std::vector<std::vector<double>> velocities_at_points(const Scene<2> &,
+                                                                 const PointEvaluator<2> &,
+                                                                 const Vector &);
+  template std::vector<std::vector<double>> velocities_at_points(const Scene<3> &,
+                                                                 const PointEvaluator<3> &,
+                                                                 const Vector &);
 } // namespace PeriDeal

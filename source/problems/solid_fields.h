@@ -102,18 +102,9 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<SolidProblem<dim>> make_bond_solid(Model<dim> &model, const Scene<dim> &scene);
 
-  /** Of a body in motion, columns of tables of points behind all others; else none. */
+  /** By component, of a body in motion: the last columns of tables of points; else none. */
   template <int dim>
-  class VelocitiesAtPoints
-  {
-  public:
-    VelocitiesAtPoints(const Scene<dim>          &scene,
-                       const PointEvaluator<dim> &reader,
-                       const Vector              &velocity);
-
-    void append_to(std::vector<double> &rows, const std::size_t point) const;
-
-  private:
-    std::vector<std::vector<double>> components;
-  };
+  std::vector<std::vector<double>> velocities_at_points(const Scene<dim>          &scene,
+                                                        const PointEvaluator<dim> &reader,
+                                                        const Vector              &velocity);
 } // namespace PeriDeal

@@ -60,11 +60,12 @@ namespace PeriDeal
 
 
     /** (side, direction) of the largest component, a pull rather than a push that is its equal. */
-    std::pair<std::string, unsigned int> largest_force(const ForceBalance &balance)
+    std::pair<std::string, unsigned int> largest_force(const ForceBalance &balance,
+                                                       const double        scale)
     {
-      constexpr double                     equal = 1e-6;
+      constexpr double                     equal = 1e-6, round_off = 1e-9;
       std::pair<std::string, unsigned int> where;
-      double                               most = 0.;
+      double                               most = round_off * scale;
       for (const auto &[side, force] : balance.sides)
         for (unsigned int d = 0; d < force.size(); ++d)
           if (const double size = std::abs(force[d]) * (force[d] > 0. ? 1. + equal : 1.);
@@ -112,10 +113,11 @@ namespace PeriDeal
 
 
   void keep_largest_force(const ForceBalance     &balance,
+                          const double            scale,
                           const double            t,
                           nlohmann::ordered_json &extremes)
   {
-    const auto [side, direction] = largest_force(balance);
+    const auto [side, direction] = largest_force(balance, scale);
     if (side.empty())
       return;
     const double value = balance.sides.at(side)[direction];
@@ -128,9 +130,9 @@ namespace PeriDeal
   }
 
 
-  std::string text_of_largest_force(const ForceBalance &balance)
+  std::string text_of_largest_force(const ForceBalance &balance, const double scale)
   {
-    const auto [side, direction] = largest_force(balance);
+    const auto [side, direction] = largest_force(balance, scale);
     if (side.empty())
       return "";
     std::ostringstream text;

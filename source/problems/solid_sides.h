@@ -26,12 +26,14 @@ namespace PeriDeal
   /**
    * Keep in @p extremes the largest component of a force on any side so far, as `largest force`
    * (`value`, `side`, `direction`, `time`). Of a pull and a support that are equal but for
-   * round-off the pull counts.
+   * round-off the pull counts; none, as where the arms of a cantilever are pushed apart, if all are
+   * round-off beside the @p scale, find_force_scale().
    */
   void keep_largest_force(const ForceBalance     &balance,
+                          const double            scale,
                           const double            t,
                           nlohmann::ordered_json &extremes);
 
   /** `force 12.3 on top in y`, of the largest component now; empty without any. */
-  std::string text_of_largest_force(const ForceBalance &balance);
+  std::string text_of_largest_force(const ForceBalance &balance, const double scale);
 } // namespace PeriDeal

@@ -104,8 +104,12 @@ namespace PeriDeal
       for (const auto &[side, moved] : displacements_of_sides(problem, problem.scene))
         for (unsigned int d = 0; d < dim; ++d)
           row("displacement of " + side + " in " + "xyz"[d], moved[d]);
-    keep_largest_force(balance, t, context.record.extremes[problem.name()]);
-    context.progress.state(text_of_largest_force(balance));
+    if (!problem.stepper)
+      problem.force_scale =
+        std::max(problem.force_scale,
+                 find_force_scale(problem, problem.scene, balance.throughput()));
+    keep_largest_force(balance, problem.force_scale, t, context.record.extremes[problem.name()]);
+    context.progress.state(text_of_largest_force(balance, problem.force_scale));
     for (unsigned int d = 0; d < dim; ++d)
       row(std::string("body force in ") + "xyz"[d], balance.body[d]);
     row("throughput", balance.throughput());
@@ -147,9 +151,6 @@ namespace PeriDeal
       context.record.balances[problem.name()]["energy balance"] = add_energies(problem, t, context);
     if (!problem.stepper)
       {
-        problem.force_scale =
-          std::max(problem.force_scale,
-                   find_force_scale(problem, problem.scene, balance.throughput()));
         context.record.balances[problem.name()]["force balance"] = {
           {"throughput", balance.throughput()},
           {"imbalance", balance.imbalance()},

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -20,15 +21,34 @@ namespace PeriDeal
     /** Has been seen, thrown out of the steps. */
     struct Enough
     {};
+
+
+    /** Steps that were not tried grow as the later half of those that were, dt ~ t^p. */
+    double n_steps_to(const double end, const std::vector<double> &times)
+    {
+      const double n = static_cast<double>(times.size());
+      if (times.size() < 4)
+        return n * end / times.back();
+      const std::size_t last = times.size() - 1, half = last / 2;
+      // Mean steps of the last quarter, and of the one before the middle.
+      const auto step = [&](const std::size_t k) {
+        const std::size_t width = std::max<std::size_t>(1, last / 4);
+        const std::size_t first = k > width ? k - width : 0;
+        return (times[k] - times[first]) / static_cast<double>(k - first);
+      };
+      const double t = times[last], dt = step(last);
+      const double p =
+        std::clamp(std::log(dt / step(half)) / std::log(t / times[half]), 0., 1. - 1e-6);
+      return n + t / (dt * (1. - p)) * (std::pow(end / t, 1. - p) - 1.);
+    }
   } // namespace
 
 
-  StepForecast::StepForecast(
+  StepForecast forecast_steps(
     const double                                                            end,
     const std::function<void(const std::function<void(const double t)> &)> &advance,
     const Operator                                                         &op,
     const MPI_Comm                                                          communicator)
-    : end(end)
   {
     constexpr double      enough = 1.; // second
     constexpr std::size_t least  = 8;  // steps, unless they take ten times as long
@@ -37,6 +57,8 @@ namespace PeriDeal
       return dealii::Utilities::MPI::max(processor_seconds() - start, communicator);
     };
     const unsigned long long before = op.n_applications();
+    std::vector<double>      times; // after each step that was tried
+    double                   spent = 0., n = 0.;
     try
       {
         advance([&](const double t) {
@@ -45,39 +67,16 @@ namespace PeriDeal
           if (spent > (times.size() < least ? 10. : 1.) * enough)
             throw Enough();
         });
-        is_complete = true;
-        spent       = passed();
+        spent = passed();
         times.push_back(end);
+        n = static_cast<double>(times.size());
       }
     catch (const Enough &)
-      {}
-    applications = static_cast<double>(op.n_applications() - before);
-  }
-
-
-  double StepForecast::n_steps() const
-  {
-    const double n = static_cast<double>(times.size());
-    if (is_complete || times.size() < 4)
-      return is_complete ? n : n * end / times.back();
-    const std::size_t last = times.size() - 1, half = last / 2;
-    // Mean steps of the last quarter, and of the one before the middle.
-    const auto step = [&](const std::size_t k) {
-      const std::size_t width = std::max<std::size_t>(1, last / 4);
-      const std::size_t first = k > width ? k - width : 0;
-      return (times[k] - times[first]) / static_cast<double>(k - first);
-    };
-    const double t = times[last], dt = step(last);
-    const double p =
-      std::clamp(std::log(dt / step(half)) / std::log(t / times[half]), 0., 1. - 1e-6);
-    return n + t / (dt * (1. - p)) * (std::pow(end / t, 1. - p) - 1.);
-  }
-
-
-
-  std::string counted(const double n, const std::string &what)
-  {
-    return n > 0. ? readable_count(std::llround(n)) + what : "";
+      {
+        n = n_steps_to(end, times);
+      }
+    const double part = n / static_cast<double>(times.size());
+    return {n, static_cast<double>(op.n_applications() - before) * part, spent * part};
   }
 
 

@@ -9,49 +9,28 @@
 
 #include <functional>
 #include <string>
-#include <tuple>
-#include <vector>
 
 namespace PeriDeal
 {
-  /**
-   * How many steps a run takes and how long they take, from its first ones: where steps adapt to a
-   * solution that nobody knows yet, and the material has to be found anew in each.
-   */
-  class StepForecast
+  struct StepForecast
   {
-  public:
-    /**
-     * Let a run go from 0 towards its end for about a second of processor time. @param advance to
-     * the end, calling what it is given after each step but the last. @param op of the steps.
-     * Collective.
-     */
-    StepForecast(const double                                                            end,
-                 const std::function<void(const std::function<void(const double t)> &)> &advance,
-                 const Operator                                                         &op,
-                 const MPI_Comm communicator);
-
-    /** Steps, applications of the operator, and seconds of processor time. */
-    std::tuple<double, double, double> all() const
-    {
-      const double n = n_steps(), part = n / static_cast<double>(times.size());
-      return {n, applications * part, spent * part};
-    }
-
-  private:
-    /**
-     * Those that were not tried grow as the later half of those that were, dt ~ t^p.
-     */
-    double n_steps() const;
-
-    const double        end;
-    std::vector<double> times; // after each step that was tried
-    double              spent = 0., applications = 0.;
-    bool                is_complete = false;
+    double n_steps, applications; // of the operator
+    double time;                  // of processors, in seconds
   };
 
-  /** A number of what; nothing of none. */
-  std::string counted(const double n, const std::string &what);
+  /**
+   * How many steps a run takes and how long they take, from its first ones: where steps adapt to a
+   * solution that nobody knows yet, and the material has to be found anew in each. The run goes
+   * from 0 towards its end for about a second of processor time.
+   * @param advance to the end, calling what it is given after each step but the last
+   * @param op of the steps
+   * Collective.
+   */
+  StepForecast forecast_steps(
+    const double                                                            end,
+    const std::function<void(const std::function<void(const double t)> &)> &advance,
+    const Operator                                                         &op,
+    const MPI_Comm                                                          communicator);
 
   /** Bounds of the spectrum, and what explicit steps are stable with them. */
   std::string describe_stable_steps(const Spectrum &spectrum);

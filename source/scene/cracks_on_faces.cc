@@ -7,9 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
-#include <set>
+#include <utility>
 
 #include "scene_checks.h"
 
@@ -54,26 +53,22 @@ namespace PeriDeal
         for (const int n : {static_cast<int>(wanted) + k, static_cast<int>(wanted) - k})
           if (n > 1 && misfit(places.cracks, n) < same)
             possible.push_back(n);
-      std::optional<unsigned int> best;
-      const auto                  first = [&](const auto &fits) {
-        const auto found = std::find_if(possible.begin(), possible.end(), fits);
-        if (!best && found != possible.end())
-          best = *found;
-      };
-      first([&](const unsigned int n) {
-        return misfit(places.tips, n) < same && misfit(places.points, n) < same;
-      });
-      first([&](const unsigned int n) { return misfit(places.tips, n) < same; });
-      first([&](const unsigned int n) {
-        return misfit(places.tips, n) < near && misfit(places.points, n) < near;
-      });
-      first([&](const unsigned int n) { return misfit(places.tips, n) < near; });
-      if (!best && !possible.empty())
-        best =
-          *std::min_element(possible.begin(), possible.end(), [&](const auto n, const auto other) {
-            return misfit(places.tips, n) < misfit(places.tips, other);
-          });
-      return best;
+      // Limits of tips and of points.
+      const std::pair<double, double> limits[] = {{same, same},
+                                                  {same, 1.},
+                                                  {near, near},
+                                                  {near, 1.}};
+      for (const auto &[of_tips, of_points] : limits)
+        for (const unsigned int n : possible)
+          if (misfit(places.tips, n) < of_tips && misfit(places.points, n) < of_points)
+            return n;
+      if (possible.empty())
+        return {};
+      return *std::min_element(possible.begin(),
+                               possible.end(),
+                               [&](const auto n, const auto other) {
+                                 return misfit(places.tips, n) < misfit(places.tips, other);
+                               });
     }
 
 

@@ -288,7 +288,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Holes<dim>::rim_over_face(const std::vector<Point<dim>> &face) const
+  double Holes<dim>::rim_over_face(const Point<dim> &first, const Point<dim> &last) const
   {
     if constexpr (dim > 1)
       {
@@ -296,17 +296,17 @@ namespace PeriDeal
         if (holes.empty())
           return 1.;
         // In the plane of the holes a face is a line.
-        const Point<2> a(face.front()[0], face.front()[1]), b(face.back()[0], face.back()[1]);
+        const Point<2> a(first[0], first[1]), b(last[0], last[1]);
         const double   length = a.distance(b), tiny = 1e-9 * length;
-        const Hole    &first = hole_nearest_to(a, holes), &last = hole_nearest_to(b, holes);
+        const Hole    &hole = hole_nearest_to(a, holes), &next = hole_nearest_to(b, holes);
         if (!(length > 0.) ||
-            (std::abs(first.distance(a)) < tiny && std::abs(last.distance(b)) < tiny &&
-             std::abs(first.distance(a + 0.5 * (b - a))) < tiny))
+            (std::abs(hole.distance(a)) < tiny && std::abs(next.distance(b)) < tiny &&
+             std::abs(hole.distance(a + 0.5 * (b - a))) < tiny))
           return 1.;
-        if (&first == &last)
-          return first.rim_between(a, b) / length;
-        const Point<2> joint = entry_from(a, first, last, 4. * length);
-        return (first.rim_between(a, joint) + last.rim_between(joint, b)) / length;
+        if (&hole == &next)
+          return hole.rim_between(a, b) / length;
+        const Point<2> joint = entry_from(a, hole, next, 4. * length);
+        return (hole.rim_between(a, joint) + next.rim_between(joint, b)) / length;
       }
     return 1.;
   }

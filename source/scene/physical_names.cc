@@ -39,6 +39,24 @@ namespace PeriDeal
   } // namespace
 
 
+  std::vector<std::pair<std::string, int>> named_sides(const std::string &lines,
+                                                       const unsigned int dim)
+  {
+    std::vector<std::pair<std::string, int>> names;
+    std::istringstream                       text(lines);
+    for (std::string line; std::getline(text, line);)
+      {
+        std::istringstream words(line);
+        unsigned int       of_dim = 0;
+        int                id     = -1;
+        const std::size_t  begin = line.find('"'), end = line.rfind('"');
+        if (words >> of_dim >> id && of_dim + 1 == dim && id >= 0 && begin < end)
+          names.emplace_back(trimmed(line.substr(begin + 1, end - begin - 1)), id);
+      }
+    return names;
+  }
+
+
   std::map<std::string, types::boundary_id> read_physical_names(const std::string &file_name,
                                                                 const std::string &folder,
                                                                 const unsigned int dim,
@@ -67,17 +85,8 @@ namespace PeriDeal
     share_text(text, communicator);
 
     std::map<std::string, types::boundary_id> names;
-    std::istringstream                        lines(text);
-    for (std::string line; std::getline(lines, line);)
-      {
-        std::istringstream words(line);
-        unsigned int       of_dim = 0;
-        int                id     = -1;
-        const std::size_t  begin = line.find('"'), end = line.rfind('"');
-        if (words >> of_dim >> id && of_dim + 1 == dim && id >= 0 && begin < end)
-          names.emplace(trimmed(line.substr(begin + 1, end - begin - 1)),
-                        id); // the first of a name
-      }
+    for (const auto &[name, id] : named_sides(text, dim))
+      names.emplace(name, id); // the first of a name
     return names;
   }
 } // namespace PeriDeal

@@ -27,9 +27,9 @@ namespace PeriDeal
 
 
   /**
-     * What the implicit methods share: the solve for a stage, and fixed or adaptive steps around a
-     * method's single step.
-     */
+   * What the implicit methods share: the solve for a stage, and fixed or adaptive steps around a
+   * method's single step.
+   */
   class ImplicitStepper : public Stepper
   {
   public:
@@ -156,21 +156,21 @@ namespace PeriDeal
     }
 
     /**
-       * One step of size h from u at t into `next`, what enters meanwhile into `step_heat`; the
-       * local error estimate into `error`. Returns the order of the estimate in h, 0 if there is
-       * none yet.
-       */
+     * One step of size h from u at t into `next`, what enters meanwhile into `step_heat`; the
+     * local error estimate into `error`. Returns the order of the estimate in h, 0 if there is
+     * none yet.
+     */
     virtual int step(const Vector &u, const double t, const double h) = 0;
 
     /** The step is good: keep what the next one needs. u is still the old value. */
     virtual void accept(const Vector &, const double) {}
 
     /**
-       * Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to
-       * the method. Where C depends on the solution, solve instead for the heat that U has more
-       * than u, H(U) - H(u) = known + s (f(t) - K U), so that the steps keep it. Returns what
-       * enters per time with U.
-       */
+     * Solve C (U - w) = s (f(t) - K U): the start of the iteration is in U, w and s > 0 belong to
+     * the method. Where C depends on the solution, solve instead for the heat that U has more
+     * than u, H(U) - H(u) = known + s (f(t) - K U), so that the steps keep it. Returns what
+     * enters per time with U.
+     */
     double solve_stage(const Vector &u, const Vector &w, const double s, const double t, Vector &U)
     {
       // Picard iterations if the material depends on the solution: it is taken at the last

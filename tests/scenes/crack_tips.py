@@ -54,7 +54,7 @@ def rest():
         tip_x, tip_y, way = (run.total(q, model) for q in OF_TIP)
         length = rows[-1][1]
         check(length > 15 * cell, f"{model}: the crack grows: {length}")
-        table.add(f"{model}: tip x, from the end of the given crack", tip_x - 0.5, length, absolute=2.5 * cell)  # measured: 1.8, 0.3 cells: ahead of the tip columns of bonds are broken in part
+        table.add(f"{model}: tip x, from the end of the given crack", tip_x - 0.5, length, absolute=2.5 * cell)  # measured: 0.3 cells (peridynamics)
         table.add(f"{model}: path of the tip", way, length, absolute=2.5 * cell)
         table.add(f"{model}: tip y", tip_y, 0, absolute=1e-12)
         table.add(f"{model}: number of tips", run.total("number of tips", model), 1, absolute=0)

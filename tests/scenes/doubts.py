@@ -8,7 +8,7 @@
 import math
 
 from scene_test import BC, FE, PD, check, check_close, run_parts, run_perideal, run_scene, scene_text, write_file
-from scene_texts import mesh_text
+from scene_texts import body_of_bonds, mesh_text
 
 
 PLATE = scene_text("""
@@ -139,21 +139,16 @@ def symmetry():
     run_scene(PLATE, {**heat, "Models": FE})
 
 
-TORN = scene_text("""
+TORN = body_of_bonds("""
 Title = A breakable plate, suddenly pulled
-Physics = elasticity
-Models = peridynamics
 Domain/Cells = 16, 17
-Material/Young modulus = 200
-Material/Poisson ratio = 0.3
-Material/Density = 2
 Material/Critical stretch = 0.01
 Boundary conditions/Traction = top: 0, 20 ; bottom: 0, -20
 Peridynamics/Surface correction = none
 Elasticity/Solver = dynamics
 Time/End time = 0.02
 Output/Fields = none
-""")
+""", young=200, density=2)
 
 
 def torn():

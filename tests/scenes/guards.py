@@ -15,6 +15,7 @@ import h5py
 import numpy
 
 from scene_test import Run, check, check_less, print_table, run_parts, run_perideal, run_scene, scene_text
+from scene_texts import body_of_bonds
 
 SOON = 20  # steps after the first growth
 TOLD = "'Action = stop' in section 'Guards'"  # in notes of what would have ended the run
@@ -59,13 +60,7 @@ Output/Write every = 0.02
 SLOW_START = VALUE_EXPLODES.replace("left: 1/(0.05 - t); right: 0", "left: 0").replace("End time = 0.2", "End time = 8\n  set Stepper  = crank nicolson").replace(
     "subsection Time", "subsection Initial and source\n  set Source = 1000*sin(40*t)\nend\nsubsection Time").replace("Write every = 0.02", "Write every = 2")
 
-BODY = scene_text("""
-Physics = elasticity
-Models = peridynamics
-Material/Young modulus = 100
-Material/Poisson ratio = 0.3
-Material/Density = 1.0
-""")
+BODY = body_of_bonds("", young=100)
 
 
 def held_motion(kinematics, end_time):

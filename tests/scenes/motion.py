@@ -5,21 +5,16 @@
     motion.py kept | stopped | ranks | supplied | refused
 """
 
-from scene_test import PD, Comparison, check, check_close, check_message, run_parts, run_scene, scene_text
+from scene_test import PD, Comparison, check, check_close, check_message, run_parts, run_scene
+from scene_texts import body_of_bonds
 
-BODY = scene_text("""
-Dimension = 2
-Physics = elasticity
-Models = peridynamics
+BODY = body_of_bonds("""
 Domain/Cells = 24, 24
-Material/Young modulus = 1
-Material/Poisson ratio = 0.25
-Material/Density = 1
 Elasticity/Solver = dynamics
 Elasticity/Kinematics = full
 Output/Write every = 1
 Output/Fields = none
-""")
+""", young=1, poisson=0.25)
 HELD = {"Boundary conditions/Displacement": "left: 0, 0"}
 
 

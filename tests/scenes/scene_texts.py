@@ -16,6 +16,17 @@ Boundary conditions/Traction = top: 0, 1 ; bottom: 0, -1
 """)
 
 
+def body_of_bonds(lines, young, poisson=0.3, density=1):
+    """An elastic body in peridynamics, and further lines as for scene_text()."""
+    return scene_text(f"""
+Physics = elasticity
+Models = peridynamics
+Material/Young modulus = {young}
+Material/Poisson ratio = {poisson}
+Material/Density = {density}
+{lines.strip()}""")
+
+
 def mesh_text(nodes, elements, names=()):
     """A Gmsh file of nodes "x y" and elements "kind 2 side side node ..." without their numbers; names: of sides 1, 2, ..."""
     numbered = lambda lines, end="": "".join(f"{k + 1} {line}{end}\n" for k, line in enumerate(lines))

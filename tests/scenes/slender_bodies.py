@@ -5,16 +5,12 @@
     slender_bodies.py strip | waves | notes
 """
 
-from scene_test import PD, Comparison, check, run_parts, run_scene, scene_text
+from scene_test import PD, Comparison, check, run_parts, run_scene
+from scene_texts import body_of_bonds
 
-BODY = scene_text("""
-Physics = elasticity
-Models = peridynamics
-Material/Young modulus = 1
-Material/Poisson ratio = 0.3
-Material/Density = 1
+BODY = body_of_bonds("""
 Output/Fields = none
-""")
+""", young=1)
 
 
 def size(dim, thick, long):

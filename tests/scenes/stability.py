@@ -14,6 +14,7 @@ import subprocess
 import sys
 
 from scene_test import SOURCE_DIR, check, check_close, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
+from scene_texts import body_of_bonds
 
 PLATE = scene_text("""
 Title = Plate with a crack
@@ -80,19 +81,13 @@ Boundary conditions/Velocity = left: -1; right: 1
 """)
 
 # Some of its bonds are broken, and nothing moves it but round-off.
-FULL = scene_text("""
+FULL = body_of_bonds("""
 Title = Plate that turns far
-Physics = elasticity
-Dimension = 2
-Models = peridynamics
 Elasticity/Solver = dynamics
 Elasticity/Kinematics = full
-Material/Young modulus = 100
-Material/Density = 1
-Material/Poisson ratio = 0.3
 Domain/Cells = 10, 10
 Boundary conditions/Displacement = left: 0, 0
-""")
+""", young=100)
 
 FOLDER = temporary_folder()
 write = functools.partial(write_file, folder=FOLDER)

@@ -85,9 +85,6 @@ namespace PeriDeal
       std::function<std::size_t()>            n_bonds;  // asked for after first_of
     };
 
-    /** @param starts of the bonds of each owned node in the list; referred to */
-    static Numbering by_starts(const std::vector<std::size_t> &starts);
-
     /**
      * Archive the marks of bonds that have been whole at first, and since when, or return those of
      * the archive, in ascending order of numbers. The list has its size then; marks are not set.

@@ -28,12 +28,9 @@ namespace PeriDeal
   template <int dim, typename Face>
   double rim_over_face(const Holes<dim> &holes, const Face &face)
   {
-    if (face->boundary_id() != hole_boundary_id)
-      return 1.;
-    std::vector<dealii::Point<dim>> corners;
-    for (unsigned int v = 0; v < face->n_vertices(); ++v)
-      corners.push_back(face->vertex(v));
-    return holes.rim_over_face(corners);
+    return face->boundary_id() != hole_boundary_id ?
+             1. :
+             holes.rim_over_face(face->vertex(0), face->vertex(face->n_vertices() - 1));
   }
 
   template <int dim>

@@ -5,8 +5,8 @@
 
 #include <deal.II/base/types.h>
 
-#include <perideal/scene/holes.h>
 #include <perideal/scene/expression.h>
+#include <perideal/scene/holes.h>
 #include <perideal/scene/parts.h>
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-  namespace PeriDeal
+namespace PeriDeal
 {
   /** Boundary id of the hole of a plate with a hole. */
   constexpr dealii::types::boundary_id hole_boundary_id = 6;

@@ -9,9 +9,18 @@
 
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace PeriDeal
 {
+  /**
+   * Names and numbers of the groups of sides, of dimension @p dim - 1, in the lines of a section
+   * `$PhysicalNames`. Not collective.
+   */
+  std::vector<std::pair<std::string, int>> named_sides(const std::string &lines,
+                                                       const unsigned int dim);
+
   /**
    * The physical names of a Gmsh file for sides of bodies of dimension @p dim (those of dimension
    * dim - 1), with their boundary ids.

@@ -179,6 +179,13 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool BondsBesideElements<dim>::has_damage() const
+  {
+    return !coupled->families().cracks().broken().empty();
+  }
+
+
+  template <int dim>
   void BondsBesideElements<dim>::take_conductivities_at(const Vector &u)
   {
     coupled->take_conductivities_at(u);

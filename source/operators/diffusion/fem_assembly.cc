@@ -142,9 +142,7 @@ namespace PeriDeal
     mass      = 0.;
     capacity  = 0.;
     fill();
-    // Damage may leave nodes alone, which keep their heat.
-    const bool may_isolate = zone_bonds &&
-                             !zone_bonds->coupling().families().cracks().broken().empty();
+    const bool  may_isolate = zone_bonds && zone_bonds->has_damage();
     std::string message;
     for (unsigned int i = 0; i < capacity.locally_owned_size() && message.empty(); ++i)
       {

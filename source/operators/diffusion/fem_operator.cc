@@ -88,9 +88,7 @@ namespace PeriDeal
   template <int dim>
   void FEMOperator<dim>::find_gershgorin()
   {
-    // Damage may leave nodes alone, which keep their heat.
-    const bool may_isolate = zone_bonds &&
-                             !zone_bonds->coupling().families().cracks().broken().empty();
+    const bool          may_isolate = zone_bonds && zone_bonds->has_damage();
     std::string         message;
     double              bound = 0.;
     std::vector<double> row_sums(stiffness_diagonal.locally_owned_size(), 0.);

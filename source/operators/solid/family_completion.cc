@@ -7,7 +7,6 @@
 #include <perideal/operators/solid/family_completion.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace PeriDeal
 {

@@ -139,9 +139,8 @@ namespace PeriDeal
         if (families.cracks().leaves_body(i, image.origin))
           continue;
         // As on a lattice.
-        const bool cut =
-          !families.cracks().empty() &&
-          is_cut<dim>(families, i, image.terms, [&](const Term &) { return image.twice_planes; });
+        const bool cut = !families.cracks().empty() &&
+                         is_cut<dim>(families, i, image.terms, image.twice_planes);
         if (cut && !(image.terms.size() == 1 &&
                      is_separated(families, i, image.terms[0], image.twice_planes)))
           continue;
@@ -240,13 +239,11 @@ namespace PeriDeal
     const Index         index =
       lattice.index(nodes.position(i)) + families.weights().members()[member].offset;
     extension->find(index, site);
+    const Point<dim> place = lattice.position(index);
+    const bool       alone = site.terms.size() == 1; // then it breaks by itself
+    const bool       cut   = families.near_crack(i) && is_cut<dim>(families, i, site.terms, place);
     // What a crack cuts of a mirror image counts in the damage.
-    const auto twice_planes = [&](const Term &term) {
-      return Point<dim>(lattice.position(index) + (nodes.position(term.node) - Point<dim>()));
-    };
-    const bool alone = site.terms.size() == 1; // then it breaks by itself
-    const bool cut   = families.near_crack(i) && is_cut<dim>(families, i, site.terms, twice_planes);
-    if (cut && !(alone && is_separated(families, i, site.terms[0], twice_planes(site.terms[0]))))
+    if (cut && !(alone && is_separated(families, i, site.terms[0], place)))
       return;
     const unsigned int image = image_at(index, family[member].beyond);
     // What completes the family is apart from a bond that breaks, as in the body.

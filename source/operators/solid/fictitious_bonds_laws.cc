@@ -22,13 +22,9 @@ namespace PeriDeal
         return;
       terms.clear();
       fictitious.for_each_term(bond.image, [&](const Term &term) { terms.push_back(term); });
-      const bool cut = is_cut<dim>(families, node, terms, [&](const Term &term) {
-        if (!families.nodes().lattice())
-          return fictitious.twice_planes(bond.image);
-        return Point<dim>(fictitious[bond.image].place +
-                          (families.nodes().position(term.node) - Point<dim>()));
-      });
-      if (cut)
+      const Point<dim> &mirror = families.nodes().lattice() ? fictitious[bond.image].place :
+                                                              fictitious.twice_planes(bond.image);
+      if (is_cut<dim>(families, node, terms, mirror))
         break_bond(bond.number, BondState::parted, t);
     });
   }

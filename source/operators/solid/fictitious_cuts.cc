@@ -13,9 +13,11 @@ namespace PeriDeal
   bool is_separated(const Families<dim>                                 &families,
                     const unsigned int                                   node,
                     const typename FictitiousExtension<dim>::Site::Term &term,
-                    const Point<dim>                                    &twice_planes)
+                    const Point<dim>                                    &mirror)
   {
     const Nodes<dim> &nodes = families.nodes();
+    const Point<dim>  twice_planes(
+      nodes.lattice() ? mirror + (nodes.position(term.node) - Point<dim>()) : mirror);
     for (unsigned int image = 0; image < (1u << dim); ++image)
       {
         if ((image & ~term.mirrored) != 0)
@@ -37,27 +39,25 @@ namespace PeriDeal
   bool is_cut(const Families<dim>                                              &families,
               const unsigned int                                                node,
               const std::vector<typename FictitiousExtension<dim>::Site::Term> &terms,
-              const std::function<Point<dim>(const typename FictitiousExtension<dim>::Site::Term &)>
-                &twice_planes)
+              const Point<dim>                                                 &mirror)
   {
     return std::any_of(terms.begin(), terms.end(), [&](const auto &term) {
       if (term.mirrored != 0 || !families.nodes().lattice())
-        return is_separated(families, node, term, twice_planes(term)); // beyond the reach, too
+        return is_separated(families, node, term, mirror); // beyond the reach, too
       return term.node != node && families.cracks().cuts(node, term.node);
     });
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                   \
-  template bool is_separated(const Families<dim> &,                                 \
-                             const unsigned int,                                    \
-                             const typename FictitiousExtension<dim>::Site::Term &, \
-                             const Point<dim> &);                                   \
-  template bool is_cut(                                                             \
-    const Families<dim> &,                                                          \
-    const unsigned int,                                                             \
-    const std::vector<typename FictitiousExtension<dim>::Site::Term> &,             \
-    const std::function<Point<dim>(const typename FictitiousExtension<dim>::Site::Term &)> &);
+#define PERIDEAL_INSTANTIATE(dim)                                                          \
+  template bool is_separated(const Families<dim> &,                                        \
+                             const unsigned int,                                           \
+                             const typename FictitiousExtension<dim>::Site::Term &,        \
+                             const Point<dim> &);                                          \
+  template bool is_cut(const Families<dim> &,                                              \
+                       const unsigned int,                                                 \
+                       const std::vector<typename FictitiousExtension<dim>::Site::Term> &, \
+                       const Point<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

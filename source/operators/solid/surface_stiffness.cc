@@ -5,8 +5,6 @@
 
 #include <perideal/operators/solid/surface_stiffness.h>
 
-#include <vector>
-
 namespace PeriDeal
 {
   using namespace dealii;
@@ -19,9 +17,10 @@ namespace PeriDeal
     {
       void add(const Tensor<1, dim> &xi, const double weight) // w x^2
       {
+        const double r2 = xi.norm_square();
         for (unsigned int a = 0; a < dim; ++a)
           for (unsigned int b = 0; b < dim; ++b)
-            sums[a][b] += weight * xi[a] * xi[a] * xi[b] * xi[b] / square(xi.norm_square());
+            sums[a][b] += weight * xi[a] * xi[a] * xi[b] * xi[b] / r2 / r2;
       }
 
       /** What strains along the axes store, twice, as a quadratic form. */
@@ -38,11 +37,6 @@ namespace PeriDeal
         theta *= law.dilatation / q;
         return law.volumetric / law.dilatation * outer_product(theta, theta) +
                law.extension / q * sums;
-      }
-
-      static double square(const double x)
-      {
-        return x * x;
       }
 
       Tensor<2, dim> sums;
@@ -74,15 +68,14 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         EvenMoments<dim> own;
-        const auto       add = [&](const Tensor<1, dim> &xi, const Tensor<1, dim> &moment) {
-          own.add(xi, moment * xi);
-        };
         rows.for_each(i, [&](const auto &bond) {
-          add(families.neighbors().bond_vector(i, bond.neighbor), bond.moment);
+          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+          own.add(xi, bond.moment * xi);
         });
         if (beyond != nullptr)
           beyond->for_each_of(i, [&](const auto &bond) {
-            add(beyond->bond_vector(bond), bond.moment);
+            const Tensor<1, dim> xi = beyond->bond_vector(bond);
+            own.add(xi, bond.moment * xi);
           });
         StateLaw law = laws[i];
         if (!laws.volumetric)

@@ -36,6 +36,9 @@ namespace PeriDeal
 
     const Coupling<dim> &coupling() const;
 
+    /** Damage may leave nodes alone, which keep their heat. */
+    bool has_damage() const;
+
     /** The bonds are a form of their own. The same on all processes. */
     bool apart() const;
 

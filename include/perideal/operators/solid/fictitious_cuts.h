@@ -6,7 +6,6 @@
 #include <perideal/bonds/families.h>
 #include <perideal/bonds/fictitious_extension.h>
 
-#include <functional>
 #include <vector>
 
 namespace PeriDeal
@@ -15,13 +14,13 @@ namespace PeriDeal
    * A crack, as it is now, lies between an owned node and the node of a term of an image, or its
    * mirror image; instead of cracks the bond is mirrored, about each set of the planes of symmetry
    * that it passes. Not collective.
-   * @param twice_planes twice the coordinates of these planes
+   * @param mirror of the image: its place on a lattice, on a mesh BoundaryImage::twice_planes
    */
   template <int dim>
   bool is_separated(const Families<dim>                                 &families,
                     const unsigned int                                   node,
                     const typename FictitiousExtension<dim>::Site::Term &term,
-                    const dealii::Point<dim>                            &twice_planes);
+                    const dealii::Point<dim>                            &mirror);
 
 
   /**
@@ -29,10 +28,8 @@ namespace PeriDeal
    * part of a family. Not collective.
    */
   template <int dim>
-  bool is_cut(
-    const Families<dim>                                              &families,
-    const unsigned int                                                node,
-    const std::vector<typename FictitiousExtension<dim>::Site::Term> &terms,
-    const std::function<dealii::Point<dim>(const typename FictitiousExtension<dim>::Site::Term &)>
-      &twice_planes);
+  bool is_cut(const Families<dim>                                              &families,
+              const unsigned int                                                node,
+              const std::vector<typename FictitiousExtension<dim>::Site::Term> &terms,
+              const dealii::Point<dim>                                         &mirror);
 } // namespace PeriDeal
