@@ -225,7 +225,7 @@ namespace
 } // namespace
 
 
-int main(int argc, char **argv)
+int main(int, char **argv)
 {
   int n_words = 1; // the others are not for the libraries: PETSc would complain of them
   Utilities::MPI::MPI_InitFinalize mpi(n_words, argv, 1);

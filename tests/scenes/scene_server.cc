@@ -155,7 +155,7 @@ namespace
 } // namespace
 
 
-int main(int argc, char **argv)
+int main(int, char **argv)
 {
   prepare_mpi_environment();
   start_hdf5();
