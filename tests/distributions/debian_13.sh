@@ -59,7 +59,7 @@ inside()
     # shellcheck disable=SC2016 # for the shell in the new namespace
     unshare --mount --propagation private sh -c '
         system=$1 packages=$2
-        mount --rbind /proc "$system/proc" && mount --rbind /dev "$system/dev" &&
+        mount --rbind /proc "$system/proc" && mount --rbind /dev "$system/dev" && mount --rbind /sys "$system/sys" &&
             mount --bind "$packages" "$system/var/cache/apt/archives" || exit 1
         shift 2
         exec chroot "$system" /usr/bin/env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
