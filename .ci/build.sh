@@ -11,10 +11,11 @@ use_preset()
 }
 use_preset release
 
-# Install what is missing. Takes 0.1 s when nothing is.
+# Install what is missing, with --tests also what only they need. Takes 0.1 s when nothing is.
 install_packages()
 {
-    bash "$root/.ci/install_packages.sh" || exit 1
+    [ -f "$build/build.ninja" ] && set -- "$@" --again
+    bash "$root/.ci/install_packages.sh" "$@"
 }
 
 # The Python with numpy, matplotlib and h5py: Debian's, since the first in PATH may lack them.
@@ -28,27 +29,31 @@ find_python()
     return 1
 }
 
-# What every parallel program here needs: several processes on few cores, also as root and in containers.
+# What every parallel program here needs: several processes on few cores, also as root and in containers; no words of the launcher where
+# one ends with a status that is not 0. Variables and no options of mpirun, since those of Open MPI 4 and 5 (PRTE) differ.
 parallel_environment()
 {
     export OMP_NUM_THREADS=1
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-    export OMPI_MCA_hwloc_base_binding_policy=none
+    export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
+    export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none
+    export OMPI_MCA_orte_execute_quiet=1
     export OMPI_MCA_btl_vader_single_copy_mechanism=none
     export PMIX_MCA_gds=hash # else a full folder for temporary files (TMPDIR) ends in a bus error
 }
 
-# Configure the build where that has not been done, or was done for a tree that stood elsewhere.
+# Configure the build where that has not been done, or was done for a tree that stood elsewhere, another deal.II or, with --tests, where
+# GoogleTest was not there yet. Says what deal.II was found.
 configure()
 {
     local log=$build/configure.log
-    local fresh=""
+    local fresh="" own=${DEAL_II_DIR:-}
     if [ -f "$build/CMakeCache.txt" ]; then
         grep -q -x -F "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt" || fresh=--fresh
         local found
         found=$(sed -n 's/^deal\.II_DIR:PATH=//p' "$build/CMakeCache.txt")
         case "$found/" in
-        "${DEAL_II_DIR:+${DEAL_II_DIR%/}/}"*) [ -f "$build/build.ninja" ] && [ -z "$fresh" ] && return 0 ;;
+        "${own%/}"/*) [ -z "$fresh" ] && built_for "$@" && return 0 ;;
         esac
     fi
     mkdir -p "$build"
@@ -58,6 +63,18 @@ configure()
         echo "Configuring failed (log: $log)."
         exit 1
     fi
+    sed -n 's/^-- \(deal\.II [0-9].*\)/\1/p' "$log"
+    if ! built_for "$@"; then
+        grep -o 'No tests: .*' "$log" || echo "No tests in $build: PERIDEAL_TESTS is off."
+        exit 1
+    fi
+}
+
+# Whether the build has what is wanted: everything that is computed with or, with --tests, the tests too.
+built_for()
+{
+    [ -f "$build/build.ninja" ] || return 1
+    [ "${1:-}" != --tests ] || grep -q '^build unit_tests:' "$build/build.ninja"
 }
 
 # Build the given targets with one line of progress; print the compiler's message if that fails.

@@ -405,7 +405,8 @@ namespace PeriDeal
 
 int main(int argc, char **argv)
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  int n_words = 1; // the others are not for the libraries: PETSc would complain of them
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(n_words, argv, 1);
   try
     {
       PeriDeal::run(argc, argv);

@@ -16,7 +16,8 @@ if(perideal_deal_ii)
   get_filename_component(perideal_deal_ii "${perideal_deal_ii}" ABSOLUTE)
   string(FIND "${deal.II_DIR}/" "${perideal_deal_ii}/" perideal_place)
   if(NOT perideal_place EQUAL 0)
-    unset(deal.II_DIR CACHE) # that of an earlier configuration
+    unset(deal.II_DIR CACHE) # those of an earlier configuration
+    unset(PERIDEAL_MPIRUN CACHE)
   endif()
   find_package(deal.II 9.4 QUIET CONFIG PATHS ${perideal_deal_ii} NO_DEFAULT_PATH)
   if(NOT deal.II_FOUND)

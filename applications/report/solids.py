@@ -229,9 +229,14 @@ def frame_body(axes, lower, upper, moves=None):
                 [np.nanmax(m[..., d]) for d in range(3)] for m in moves]).max(axis=0))])
     low, high = corners.min(axis=0), corners.max(axis=0)
     pad = 0.13 * (high - low).max()
-    axes.set_xlim(low[0] - pad, high[0] + pad)
-    axes.set_ylim(low[1] - 0.7 * pad, high[1] + 0.1 * pad)
-    axes.set_aspect("equal", adjustable="datalim")
+    low, high = low - [pad, 0.7 * pad], high + [pad, 0.1 * pad]
+    # Wider or higher to fill the axes (Matplotlib 3.10 does not do so with limits that are set without a warning).
+    box = axes.bbox
+    size = high - low
+    more = np.maximum(size, size[::-1] * [box.width / box.height, box.height / box.width]) - size
+    axes.set_xlim(low[0] - more[0] / 2, high[0] + more[0] / 2)
+    axes.set_ylim(low[1] - more[1] / 2, high[1] + more[1] / 2)
+    axes.set_aspect("equal")
     axes.axis("off")
 
 

@@ -75,7 +75,8 @@ int main(int argc, char **argv)
 {
   prepare_mpi_environment();
   start_hdf5();
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  int n_words = 1; // the others are not for the libraries: PETSc would complain of them
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(n_words, argv, 1);
   const bool first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   handle_signals(first_rank, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1);
   const auto end = [&](const std::string &message, const ExitStatus status) {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace PeriDeal
 {
@@ -236,7 +237,7 @@ namespace PeriDeal
         {
           GridTools::exchange_cell_data_to_ghosts<int, Triangulation<dim>>(
             mesh,
-            [&](const Cell &cell) { return std_cxx17::optional<int>(mark_of(cell)); },
+            [&](const Cell &cell) { return std::optional<int>(mark_of(cell)); },
             [](const Cell &cell, const int mark) {
               cell->clear_refine_flag();
               cell->clear_coarsen_flag();

@@ -3,6 +3,7 @@
 
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/mesh/node_search.h>
+#include <perideal/mesh/points_within.h>
 
 #include <nanoflann.hpp>
 
@@ -100,9 +101,8 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       query[d] = p[d];
     found.clear();
-    nanoflann::SearchParams parameters;
-    parameters.sorted = false;
-    tree->index.radiusSearch(query, distance * distance, found, parameters);
+    PointsWithin result(distance, found);
+    tree->index.radiusSearchCustomCallback(query, result);
   }
 
 

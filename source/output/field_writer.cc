@@ -30,7 +30,7 @@ namespace PeriDeal
     DataOutBase::VtkFlags quick_flags()
     {
       DataOutBase::VtkFlags flags;
-      flags.compression_level = DataOutBase::VtkFlags::best_speed;
+      flags.compression_level = decltype(flags.compression_level)::best_speed;
       return flags;
     }
 

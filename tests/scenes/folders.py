@@ -18,7 +18,7 @@ import tempfile
 import time
 import xml.etree.ElementTree as xml
 
-from scene_test import EXECUTABLE, MPIRUN, SOURCE_DIR, check, run_parts, run_perideal, scene_text, temporary_folder, write_file
+from scene_test import EXECUTABLE, SOURCE_DIR, check, command_and_environment, run_parts, run_perideal, scene_text, temporary_folder, write_file
 
 SCENE = scene_text("""
 Dimension = 2
@@ -51,12 +51,9 @@ def run(results, settings=None, scene=None, ranks=1, cwd=None):
 
 def start(results, settings=None, ranks=1, **more):
     """A run in the background, in a process group of its own."""
-    words = [EXECUTABLE] + arguments(scene_file(), results, settings)
-    if ranks > 1:
-        words = [MPIRUN, "-q", "--oversubscribe", "-np", str(ranks)] + words
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    words, variables = command_and_environment(arguments(scene_file(), results, settings), ranks)
     return subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                            start_new_session=True, env=environment, **more)
+                            start_new_session=True, env=variables, **more)
 
 
 def listing(folder):

@@ -155,11 +155,12 @@ namespace
 } // namespace
 
 
-int main(int argc, char **argv)
+int main(int, char **argv)
 {
   prepare_mpi_environment();
   start_hdf5();
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  int n_words = 1; // the others are not for the libraries: PETSc would complain of them
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(n_words, argv, 1);
   handle_signals(is_first(), dealii::Utilities::MPI::n_mpi_processes(communicator) == 1);
   while (true)
     {

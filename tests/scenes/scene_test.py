@@ -136,12 +136,15 @@ def _value(text):
 
 
 def _environment():
+    """Of parallel programs, as in .ci/build.sh."""
     return dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                OMPI_MCA_hwloc_base_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1")
+                OMPI_MCA_rmaps_base_oversubscribe="1", PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe",
+                OMPI_MCA_hwloc_base_binding_policy="none", PRTE_MCA_hwloc_default_binding_policy="none",
+                OMPI_MCA_orte_execute_quiet="1", OMPI_MCA_mpi_yield_when_idle="1")
 
 
 def _on_ranks(command, ranks):
-    return [MPIRUN, "-q", "--oversubscribe", "-np", str(ranks)] + command if ranks > 1 else command
+    return [MPIRUN, "-np", str(ranks)] + command if ranks > 1 else command
 
 
 def command_and_environment(arguments, ranks=1):

@@ -13,8 +13,8 @@ import os
 import subprocess
 import sys
 
-from scene_test import MPIRUN, SOURCE_DIR, Run, check, check_clean_error, check_message, finish, temporary_folder
-from scene_test import _environment
+from scene_test import SOURCE_DIR, Run, check, check_clean_error, check_message, finish, temporary_folder
+from scene_test import _environment, _on_ranks
 
 sys.path.insert(0, os.path.join(SOURCE_DIR, "tests", "reference"))
 
@@ -29,9 +29,7 @@ def run(*overrides, ranks=1, folder=None):
     if folder is None:
         folder = temporary_folder()
     words = [PROGRAM, SCENE, f"Output directory={folder}", f"Time/Time step={STEP}", *overrides]
-    if ranks > 1:
-        words = [MPIRUN, "-q", "--oversubscribe", "-np", str(ranks), *words]
-    result = subprocess.run(words, env=_environment(), capture_output=True, text=True, timeout=300, check=False)
+    result = subprocess.run(_on_ranks(words, ranks), env=_environment(), capture_output=True, text=True, timeout=300, check=False)
     return Run(folder, result.returncode, result.stdout, result.stderr)
 
 

@@ -58,7 +58,8 @@ namespace
 
 int main(int argc, char *argv[])
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  int n_words = 1; // the others are not for the libraries: PETSc would complain of them
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(n_words, argv, 1);
   testing::InitGoogleTest(&argc, argv);
 
   testing::TestEventListeners &listeners = testing::UnitTest::GetInstance()->listeners();

@@ -5,6 +5,7 @@
 
 #include <perideal/base/gathered_lists.h>
 #include <perideal/base/interleaved.h>
+#include <perideal/mesh/points_within.h>
 #include <perideal/operators/solid/short_range_contact.h>
 
 #include <nanoflann.hpp>
@@ -264,8 +265,6 @@ namespace PeriDeal
                                           cloud,
                                           nanoflann::KDTreeSingleIndexAdaptorParams(16));
     tree.buildIndex();
-    nanoflann::SearchParams parameters;
-    parameters.sorted = false;
     // Half of the skin over that share is the largest spacing.
     const double reach = share_of_spacing / share_of_skin * skin + skin;
 
@@ -277,7 +276,8 @@ namespace PeriDeal
         const Place &own   = list[first + k];
         bool         known = false;
         found.clear();
-        tree.radiusSearch(own.now.begin_raw(), reach * reach, found, parameters);
+        PointsWithin near(reach, found);
+        tree.radiusSearchCustomCallback(own.now.begin_raw(), near);
         for (const auto &[j, square] : found)
           {
             if (j == first + k || std::sqrt(square) > distance_of(own, list[j]) + skin)
