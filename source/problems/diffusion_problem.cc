@@ -293,14 +293,14 @@ namespace PeriDeal
           scene.time.end_time,
           [&](const AfterStep &then) { advance_through_events(scene.time.end_time, then); },
           op(),
+          stepper->name() == "rkc2",
           this->dofs().get_communicator());
         std::tie(n_steps, n, time) = forecast.all();
       }
     if (!says)
       return time;
     context.progress.line(bounds + "\n  stepper: " + stepper->name());
-    const std::string steps = n_steps > 0. ? readable_count(std::llround(n_steps)) + " steps, " :
-                                             "";
+    const std::string steps = counted(n_steps, " steps, ");
     if (n > 0.)
       context.progress.line("  estimated: " + steps + readable_count(std::llround(n)) +
                             " operator applications, " + readable_duration(time));

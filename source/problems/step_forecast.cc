@@ -27,8 +27,12 @@ namespace PeriDeal
     const double                                                            end,
     const std::function<void(const std::function<void(const double t)> &)> &advance,
     const Operator                                                         &op,
+    const bool                                                              stabilized,
     const MPI_Comm                                                          communicator)
     : end(end)
+    , stabilized(stabilized)
+    , largest(op.spectrum().sharp)
+    , layer(largest > 0. ? 2.8 / largest : 0.)
   {
     constexpr double      enough = 1.; // second
     constexpr std::size_t least  = 8;  // steps, unless they take ten times as long
@@ -55,24 +59,47 @@ namespace PeriDeal
   }
 
 
-  double StepForecast::n_steps() const
+  std::tuple<double, double, double> StepForecast::all() const
   {
-    const double n = static_cast<double>(times.size());
-    if (is_complete || times.size() < 4)
-      return is_complete ? n : n * end / times.back();
-    const std::size_t last = times.size() - 1, half = last / 2;
-    // Mean steps of the last quarter, and of the one before the middle.
-    const auto step = [&](const std::size_t k) {
-      const std::size_t width = std::max<std::size_t>(1, last / 4);
-      const std::size_t first = k > width ? k - width : 0;
-      return (times[k] - times[first]) / static_cast<double>(k - first);
-    };
-    const double t = times[last], dt = step(last);
-    const double p =
-      std::clamp(std::log(dt / step(half)) / std::log(t / times[half]), 0., 1. - 1e-6);
-    return n + t / (dt * (1. - p)) * (std::pow(end / t, 1. - p) - 1.);
+    constexpr unsigned int n_spans = 400;
+    const double           n_tried = static_cast<double>(times.size());
+    double                 n = n_tried, cost = n_tried; // in those of the steps that were tried
+    if (!is_complete)
+      {
+        const std::size_t last = times.size() - 1, half = last / 2;
+        // Mean steps of the last quarter, and of the one before the middle.
+        const auto step = [&](const std::size_t k) {
+          const std::size_t width = std::max<std::size_t>(1, last / 4);
+          const std::size_t first = k > width ? k - width : 0;
+          return k > first ? (times[k] - times[first]) / static_cast<double>(k - first) : times[k];
+        };
+        const double t = times[last], dt = step(last), from = std::max(t, layer);
+        // What has come in at a side changes at the rate 1/t, once it has passed a cell.
+        const double p =
+          t < 4. * layer ?
+            1. :
+          times.size() < 4 ?
+            0. :
+            std::clamp(std::log(dt / step(half)) / std::log(t / times[half]), 0., 1.);
+        const double first = stages(dt), ratio = std::pow(end / t, 1. / n_spans);
+        double       s = t;
+        for (unsigned int k = 0; k < n_spans; ++k, s *= ratio)
+          {
+            const double of_span = dt * std::pow(std::max(s * std::sqrt(ratio), layer) / from, p),
+                         count   = s * (ratio - 1.) / of_span;
+            n += count;
+            cost += count * stages(of_span) / first;
+          }
+      }
+    return {n, applications * cost / n_tried, spent * cost / n_tried};
   }
 
+
+  double StepForecast::stages(const double dt) const
+  {
+    constexpr double least = 2.;
+    return stabilized ? std::max(least, std::sqrt(1. + 1.54 * dt * largest)) : 1.;
+  }
 
 
   std::string counted(const double n, const std::string &what)

@@ -24,28 +24,29 @@ namespace PeriDeal
     /**
      * Let a run go from 0 towards its end for about a second of processor time. @param advance to
      * the end, calling what it is given after each step but the last. @param op of the steps.
-     * Collective.
+     * @param stabilized explicit steps whose stages go with the length (rkc2). Collective.
      */
     StepForecast(const double                                                            end,
                  const std::function<void(const std::function<void(const double t)> &)> &advance,
                  const Operator                                                         &op,
+                 const bool                                                              stabilized,
                  const MPI_Comm communicator);
 
-    /** Steps, applications of the operator, and seconds of processor time. */
-    std::tuple<double, double, double> all() const
-    {
-      const double n = n_steps(), part = n / static_cast<double>(times.size());
-      return {n, applications * part, spent * part};
-    }
+    /**
+     * Steps, applications of the operator, and seconds of processor time. Steps that were not tried
+     * grow as the later half of those that were, dt ~ t^p; where these ended before what comes in
+     * at a side had passed a cell, they stay until then and go as t from there on.
+     */
+    std::tuple<double, double, double> all() const;
 
   private:
-    /**
-     * Those that were not tried grow as the later half of those that were, dt ~ t^p.
-     */
-    double n_steps() const;
+    /** How often a step applies the operator, relatively: more often the longer it is. */
+    double stages(const double dt) const;
 
     const double        end;
-    std::vector<double> times; // after each step that was tried
+    const bool          stabilized;
+    const double        largest, layer; // eigenvalue; time until a layer has passed a cell
+    std::vector<double> times;          // after each step that was tried
     double              spent = 0., applications = 0.;
     bool                is_complete = false;
   };
