@@ -35,6 +35,7 @@ os.environ.setdefault("PERIDEAL_DOTS_PER_INCH", "50")  # coarse pictures show wh
 import contours  # noqa: E402
 import curves  # noqa: E402
 import difference  # noqa: E402
+import film  # noqa: E402
 import findings  # noqa: E402
 import flux  # noqa: E402
 import materials  # noqa: E402
@@ -233,11 +234,18 @@ class Pages(ReportCase):
                          "Zero at all times, not drawn: heat flow from sources."):
             self.assertIn(sentence, text)
 
-    def test_many_times_show_six(self):
+    def test_many_times_are_small_pictures(self):
+        """The first and the last of six of each model on one scale, and the last one in full."""
         make_plate(self.directory, 8, times=[0.1 * k for k in range(1, 10)])
         page = self.page("", drawn=False)
-        self.assertEqual(len(page.images), 6 + 5)
-        self.assertTrue("Also written, not shown: t = 0.2, 0.5, 0.8 s" in "".join(page.text))
+        self.assertEqual(len(page.images), 2 + 5)
+        self.assertIn("6 of the 9 written times, on one colour scale", "".join(page.text))
+        run = Run(self.directory)
+        self.assertEqual(film.spread(range(9), 6), [0, 2, 3, 5, 6, 8])
+        sheet, n = film.sheet_of(run, run.words.solution)
+        self.assertEqual((len(sheet.axes), n), (2 * 6 + 1, 6))  # and the scale
+        scales = {tuple(image.norm.boundaries) for axes in sheet.axes for image in axes.get_images()}
+        self.assertEqual(len(scales), 1)
 
     def test_fields_and_tables_may_be_absent(self):
         make_plate(self.directory, 8)

@@ -319,11 +319,19 @@ def outline(axes, view, inside, **look):
         axes.plot(*np.asarray(line).T, **look)
 
 
+def shapes_at(maps, index, models, factor):
+    """Shapes of one time; those of the last call, which other fields of that time ask for again."""
+    key = (index, tuple(models), factor)
+    if getattr(maps, "last_shapes", (None,))[0] != key:
+        maps.last_shapes = key, Shapes(maps, [index], models, factor)
+    return maps.last_shapes[1]
+
+
 def deformed_figure(maps, index, words, field, factor, largest=None, scale=None):
     """A field of all models on their deformed shapes, and the difference on the shape at rest."""
     run = maps.run
     models = contours.models_with(run, index, field.name)
-    shapes = Shapes(maps, [index], models, factor)
+    shapes = shapes_at(maps, index, models, factor)
     models = [m for m in models if (index, m) in shapes.shapes]
     if not models:
         return None

@@ -99,7 +99,7 @@ class ElasticSections:
 
     def under_stress(self):
         """The shown times with more stress than what a solver leaves of none; all of a motion."""
-        if not loading.is_slow(self.run):
+        if not loading.is_slow(self.run) or self.many:
             return self.shown
         sizes = self.largest_stresses()
         bare = [i for i in self.shown if not sizes[i] > NO_STRESS * max(sizes.values())]
@@ -170,6 +170,9 @@ class ElasticSections:
             written = [i for i in indices if self.run.has_field(i, field.name)]
             if not written:
                 continue
+            if self.many and len(written) > 1:
+                self.sheet(field, factor)
+                written = [self.stressed() if field.name == "von_mises" else written[-1]]
             scale = contours.common_scale(self.run, written, field)
             if factor is not None:
                 self.page.paragraph(f"The deformed shape, with {deformed.factor_text(factor)}; the body "

@@ -19,6 +19,9 @@ PAPER_AXES = {0: [2, 1], 1: [0, 2], 2: [0, 1]}
 
 def shape_values(points, dimension):
     """Multilinear shape functions of the vertices (VTK order) at reference points (P x dim)."""
+    if dimension == 2:
+        s, t = points.T
+        return np.stack([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t], axis=1)
     corner = REFERENCE[dimension][None, :, :]
     factors = np.where(corner == 1, points[:, None, :], 1 - points[:, None, :])
     return factors.prod(axis=2)
@@ -45,9 +48,36 @@ def boxes_along_axes(corners):
     return None
 
 
+def reference_points_2d(corners, points):
+    """reference_points() of quadrilaterals, by x = a + b s + d t + e s t."""
+    a, b, d = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0]
+    e = corners[:, 2] - corners[:, 3] - b
+    size = np.ptp(corners, axis=1).max(axis=1) + 1e-300
+    at = np.full(points.shape, 0.5)
+    rest = np.arange(len(points))  # those that have not arrived
+    for _ in range(8):
+        s, t = at[rest].T
+        (bx, by), (dx, dy), (ex, ey) = b[rest].T, d[rest].T, e[rest].T
+        rx, ry = (points[rest] - a[rest]).T
+        rx, ry = rx - bx * s - dx * t - ex * s * t, ry - by * s - dy * t - ey * s * t
+        far = np.maximum(np.abs(rx), np.abs(ry)) >= 1e-9 * size[rest]
+        if not far.any():
+            break
+        rest, s, t, rx, ry = rest[far], s[far], t[far], rx[far], ry[far]
+        sx, sy, tx, ty = bx[far] + ex[far] * t, by[far] + ey[far] * t, dx[far] + ex[far] * s, dy[far] + ey[far] * s
+        determinant = sx * ty - sy * tx
+        bad = np.abs(determinant) < 1e-14 * size[rest] ** 2
+        determinant[bad] = 1.0
+        at[rest, 0] = s + np.clip(np.where(bad, rx, (rx * ty - ry * tx) / determinant), -2, 2)
+        at[rest, 1] = t + np.clip(np.where(bad, ry, (ry * sx - rx * sy) / determinant), -2, 2)
+    return at
+
+
 def reference_points(corners, points):
     """Newton's inverse of the multilinear map; one step suffices on parallelepipeds."""
     dimension = points.shape[1]
+    if dimension == 2:
+        return reference_points_2d(corners, points)
     at = np.full(points.shape, 0.5)
     size = np.ptp(corners, axis=1).max(axis=1)[:, None] + 1e-300
     for _ in range(8):

@@ -224,6 +224,10 @@ class Run:
             cracks = self.summary["fields"][index].get("cracks", cracks)
         return [np.array(c, float) for c in cracks if len(c) >= 2]
 
+    def cracks_text(self, index):
+        """What tells the cracks of one written time from those of another."""
+        return json.dumps(self.summary["fields"][index].get("cracks"))
+
     def sides(self, brief=False):
         """What holds on each side: {side: text}, in the words of the physics."""
         return {side: self.words.condition(text, brief)

@@ -20,6 +20,7 @@ try:
     import contours
     import curves
     import difference
+    import film
     import findings
     import flux
     import materials
@@ -48,6 +49,8 @@ class Report:
         self.maps = contours.Maps(run)
         self.page = Page(figure_directory)
         self.shown = run.shown_indices(SHOWN_TIMES[run.dimension])
+        # A page of large pictures is read by nobody: then small ones, and one time in full.
+        self.many = run.dimension == 2 and len(run.shown_indices(sys.maxsize)) > len(self.shown)
         self.largest = difference.largest(run, self.shown[-1], self.words.solution.name) \
             if self.shown else None
 
@@ -180,7 +183,9 @@ class Report:
         scale = contours.common_scale(run, self.shown, field)
         self.page.paragraph(self.picture_text(scale, field))
         times = run.written_times()
-        for index in self.shown:
+        if self.many:
+            self.sheet(field)
+        for index in self.shown[-1:] if self.many else self.shown:
             largest = difference.largest(run, index, field.name)
             figure = module.field_figure(self.maps, index, self.words, field, largest, scale)
             heading = self.words.at_time(times[index], self.steady)
@@ -188,13 +193,19 @@ class Report:
                              self.picture_caption(largest, field, index), False,
                              name(heading) if self.steady else heading)
         hidden = [plain(t) for i, t in enumerate(times) if i not in self.shown]
-        if hidden:
+        if hidden and not self.many:
             self.page.paragraph(f"Also written, not shown: t = {', '.join(hidden)} "
                                 f"{self.words.time}.")
 
+    def sheet(self, field, factor=None):
+        """Small pictures of a field at many times."""
+        figure, n = film.sheet_of(self.run, field, factor)
+        self.page.figure(figure, f"{field.name}_sheet", f"{plain(n)} of the {plain(len(self.run.summary['fields']))} "
+                         "written times, on one colour scale; animate.py draws all of them.", False)
+
     def scale_text(self, scale, field):
         """What the colours have in common."""
-        several = len(self.shown) > 1
+        several = len(self.shown) > 1 and not self.many
         if len(self.run.models) < 2 or not field.isolines:
             lines = f"Lines are {field.isolines}. " if field.isolines else ""
             return lines + (

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <limits>
 
 #include "duration.h"
 
@@ -21,8 +22,9 @@ namespace PeriDeal
   namespace
   {
     // What goes on in this process, told by steppers and solvers that know nobody who shows it.
-    std::atomic<double>             time_reached{0.};
-    std::atomic<unsigned long long> steps_done{0}, equilibria{0}, bonds_broken{0};
+    constexpr auto      whole = std::numeric_limits<unsigned long long>::max(); // no bond can break
+    std::atomic<double> time_reached{0.};
+    std::atomic<unsigned long long> steps_done{0}, equilibria{0}, bonds_broken{whole};
 
 
     struct Lock
@@ -92,7 +94,7 @@ namespace PeriDeal
   {
     steps_done   = 0;
     equilibria   = 0;
-    bonds_broken = 0;
+    bonds_broken = whole;
     pthread_condattr_t clock;
     pthread_condattr_init(&clock);
     pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
@@ -184,13 +186,18 @@ namespace PeriDeal
       add("%s %s", n > 0 ? "," : ":", state);
     if (sought > 1)
       add(", equilibrium %llu", sought);
-    if (broken > 0)
+    const bool may_break = broken != whole;
+    if (may_break && broken > 0)
       add(", %llu broken bonds", broken);
     add("; %s elapsed", elapsed);
-    if (left >= 0.)
+    // How many equilibria are still to come nobody knows, once bonds break between them.
+    const bool known = !may_break || sought == 0 || broken == 0;
+    if (!known)
+      add(", time left unknown");
+    else if (left >= 0.)
       {
         format_duration(rest, sizeof rest, left);
-        add(", about %s left", rest);
+        add(may_break && sought > 0 ? ", %s left or more" : ", about %s left", rest);
       }
     return std::min<int>(n, static_cast<int>(size) - 1);
   }

@@ -290,6 +290,7 @@ namespace PeriDeal
         scene.time.end_time,
         [&](const AfterStep &then) { advance_through_events(scene.time.end_time, then); },
         op(),
+        stepper->name() == "rkc2",
         this->dofs().get_communicator());
     else if (run.applications > 0.)
       run.time = run.applications * time_of_application(op());

@@ -172,6 +172,7 @@ namespace PeriDeal
         note_own_poisson_ratio(scene, lowest, highest, notes);
         note_locking(scene, highest, notes);
         note_tips_in_cells(scene, notes);
+        note_slender_cracks(scene, notes);
         note_slow_oblique_cracks(scene, notes);
         note_growth(scene, notes);
       }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 
 namespace PeriDeal
@@ -31,6 +32,51 @@ namespace PeriDeal
     {
       const double part = place - std::floor(place), here = upwards ? part : 1. - part;
       return here < 0.5 ? -here : 1. - here;
+    }
+
+
+    /** What of a crack along an axis is in a box. */
+    struct CrackAlongAxis
+    {
+      unsigned int        axis;
+      double              length, arm; // arm: up to the nearest side that it runs along
+      std::vector<double> beyond;      // beyond_tip() of its ends in the body
+    };
+
+
+    /** Nothing where a crack lies across the cells: there it is a staircase. */
+    std::optional<CrackAlongAxis> along_axis(const Scene<2>              &scene,
+                                             const std::vector<Point<2>> &crack)
+    {
+      const Tensor<1, 2> h     = scene.domain.spacing();
+      const Point<2>     lower = scene.domain.lower, upper = scene.domain.upper;
+      const Point<2>    &a = crack[0], &b = crack[1];
+      const unsigned int axis   = std::abs(b[0] - a[0]) > std::abs(b[1] - a[1]) ? 0 : 1,
+                         across = 1 - axis;
+      if (std::abs(b[across] - a[across]) > 1e-9 * h[across])
+        return {};
+      const double from = std::max(lower[axis], std::min(a[axis], b[axis])),
+                   to   = std::min(upper[axis], std::max(a[axis], b[axis]));
+      CrackAlongAxis found{axis,
+                           to - from,
+                           std::min(a[across] - lower[across], upper[across] - a[across]),
+                           {}};
+      for (const bool upwards : {false, true})
+        {
+          const double tip = upwards ? to : from;
+          if (tip > lower[axis] + 1e-9 * h[axis] && tip < upper[axis] - 1e-9 * h[axis])
+            found.beyond.push_back(
+              beyond_tip((tip - lower[axis]) / h[axis] + (upwards ? 1e-9 : -1e-9), upwards));
+        }
+      return found;
+    }
+
+
+    /** Sides beside a crack, along which it runs, are nearer than its ends are to each other. */
+    bool is_slender(const CrackAlongAxis &crack)
+    {
+      return crack.beyond.size() > 0 && crack.arm > 0. &&
+             crack.length > 0.95 * crack.arm * crack.beyond.size();
     }
   } // namespace
 
@@ -85,37 +131,91 @@ namespace PeriDeal
             scene.domain.shape != Shape::box || !cracks.tips.empty() ||
             scene.cuts_in_part_at_tips())
           return;
-        const Tensor<1, 2> h     = scene.domain.spacing();
-        const Point<2>     lower = scene.domain.lower, upper = scene.domain.upper;
         for (unsigned int k = 0; k < cracks.cracks.size(); ++k)
           {
-            const Point<2>    &a = cracks.cracks[k][0], &b = cracks.cracks[k][1];
-            const unsigned int axis = std::abs(b[0] - a[0]) > std::abs(b[1] - a[1]) ? 0 : 1;
-            if (std::abs(b[1 - axis] - a[1 - axis]) > 1e-9 * h[1 - axis])
-              continue; // across the cells it is a staircase
-            const double from = std::max(lower[axis], std::min(a[axis], b[axis])),
-                         to   = std::min(upper[axis], std::max(a[axis], b[axis]));
-            double gained = 0., most = 0.;
-            for (const bool upwards : {false, true})
+            const auto crack = along_axis(scene, cracks.cracks[k]);
+            if (!crack || is_slender(*crack))
+              continue;
+            const double h      = scene.domain.spacing()[crack->axis];
+            double       gained = 0., most = 0.;
+            for (const double beyond : crack->beyond)
               {
-                const double tip = upwards ? to : from;
-                if (tip <= lower[axis] + 1e-9 * h[axis] || tip >= upper[axis] - 1e-9 * h[axis])
-                  continue;
-                double beyond =
-                  beyond_tip((tip - lower[axis]) / h[axis] + (upwards ? 1e-9 : -1e-9), upwards);
                 gained += beyond;
                 most = std::max(most, std::abs(beyond));
               }
             if (most < tolerable)
               continue;
-            const double share = 0.5 * gained * h[axis] / (to - from);
+            const double share = 0.5 * gained * h / crack->length;
             notes.push_back(
               "crack " + std::to_string(k + 1) + " (section 'Cracks') ends " + rounded_text(most) +
               " of a cell from the cells that it takes away ('Mesh = removed'): to finite elements it is " +
-              rounded_text(std::abs(gained) * h[axis]) + (gained > 0. ? " longer" : " shorter") +
+              rounded_text(std::abs(gained) * h) + (gained > 0. ? " longer" : " shorter") +
               " in all, which makes stress intensities " + rounded_text(100. * std::abs(share)) +
               " % or more too " + (gained > 0. ? "large" : "small") +
               ". 'Cells' in section 'Domain' with which its ends lie on edges of cells, or 'Mesh = faces', make up for it.");
+          }
+      }
+  }
+
+
+  template <int dim>
+  void note_slender_cracks(const Scene<dim> &scene, std::vector<std::string> &notes)
+  {
+    if constexpr (dim == 2)
+      {
+        const auto &cracks  = scene.cracks;
+        const bool  removed = cracks.mesh == CrackMesh::removed,
+                   bonds    = runs(scene, ModelKind::peridynamics);
+        if (scene.domain.shape != Shape::box || !cracks.tips.empty() ||
+            !scene.elasticity.is_static() || breaks(scene) || !(removed || bonds))
+          return;
+        for (unsigned int k = 0; k < cracks.cracks.size(); ++k)
+          {
+            const auto crack = along_axis(scene, cracks.cracks[k]);
+            if (!crack || !is_slender(*crack))
+              continue;
+            // Measured (doc/fracture.md), over the heights of arms.
+            const Tensor<1, 2> h     = scene.domain.spacing();
+            const double       along = h[crack->axis] / crack->arm,
+                         cell        = h[1 - crack->axis] / crack->arm,
+                         m           = scene.horizon() / h[1 - crack->axis];
+            std::vector<std::string> parts;
+            const auto add = [&](const ModelKind kind, const double first, const double second) {
+              const auto size = [](const double share) {
+                return rounded_text(100. * std::abs(share)) + " % too " +
+                       (share > 0. ? "large" : "small");
+              };
+              if (runs(scene, kind))
+                parts.push_back("K_I " + size(first) + " and K_II " + size(second) + " (" +
+                                to_string(kind) + ")");
+            };
+            if (removed && !scene.cuts_in_part_at_tips())
+              {
+                double first = 0., second = 0.;
+                for (const double beyond : crack->beyond)
+                  if (const double found = 0.63 * cell + 2.1 * beyond * along;
+                      first == 0. || std::abs(found) > std::abs(first))
+                    {
+                      first  = found;
+                      second = 2.7 * cell + 0.9 * beyond * along;
+                    }
+                add(ModelKind::finite_elements, first, second);
+              }
+            if (removed)
+              add(ModelKind::coupled, 0.09 * m * cell, 0.5 * m * cell);
+            if (bonds)
+              parts.push_back("K_I up to " + rounded_text(100. * (removed ? 0.25 : 0.5) * cell) +
+                              " % off and K_II " + rounded_text(60. * cell) +
+                              " % too small (peridynamics)");
+            notes.push_back(
+              "crack " + std::to_string(k + 1) + " (section 'Cracks') parts slender arms" +
+              (removed ? ", which the cells that it takes away ('Mesh = removed') make thinner" :
+                         "") +
+              ". By what double cantilevers and end-notched beams have shown, expect " +
+              join_names(parts) + "." +
+              (removed ?
+                 " To elements twice as many cells halve that; on faces ('Mesh = faces') they are off by some tenths of a percent." :
+                 ""));
           }
       }
   }
@@ -232,6 +332,7 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                                                  \
   template void        note_locking(const Scene<dim> &, const double, std::vector<std::string> &); \
   template void        note_tips_in_cells(const Scene<dim> &, std::vector<std::string> &);         \
+  template void        note_slender_cracks(const Scene<dim> &, std::vector<std::string> &);        \
   template void        note_slow_oblique_cracks(const Scene<dim> &, std::vector<std::string> &);   \
   template std::string note_on_few_bonds(const Scene<dim> &,                                       \
                                          const std::vector<FamilyMember<dim>> &);                  \

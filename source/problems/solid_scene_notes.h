@@ -27,6 +27,13 @@ namespace PeriDeal
   template <int dim>
   void note_tips_in_cells(const Scene<dim> &scene, std::vector<std::string> &notes);
 
+  /**
+   * Cracks along sides nearer than they are long, as in cantilevers: what stress intensities are
+   * off, by models.
+   */
+  template <int dim>
+  void note_slender_cracks(const Scene<dim> &scene, std::vector<std::string> &notes);
+
   /** Cracks at an angle to the rows of nodes, from which bonds break in groups. */
   template <int dim>
   void note_slow_oblique_cracks(const Scene<dim> &scene, std::vector<std::string> &notes);

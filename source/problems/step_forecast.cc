@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -23,23 +24,52 @@ namespace PeriDeal
     {};
 
 
-    /** Steps that were not tried grow as the later half of those that were, dt ~ t^p. */
-    double n_steps_to(const double end, const std::vector<double> &times)
+    /** How often a step applies the operator, relatively: more often the longer it is. */
+    double stages(const double dt, const double largest, const bool stabilized)
     {
-      const double n = static_cast<double>(times.size());
-      if (times.size() < 4)
-        return n * end / times.back();
-      const std::size_t last = times.size() - 1, half = last / 2;
+      constexpr double least = 2.;
+      return stabilized ? std::max(least, std::sqrt(1. + 1.54 * dt * largest)) : 1.;
+    }
+
+
+    /**
+     * The number of steps to an end, and what they cost in steps like those that were tried. They
+     * grow as the later half of those, dt ~ t^p; where these ended before what comes in at a side
+     * had passed a cell, they stay until then and go as t from there on.
+     * @param times after each step that was tried
+     * @param largest eigenvalue
+     */
+    std::pair<double, double> steps_to(const double               end,
+                                       const std::vector<double> &times,
+                                       const double               largest,
+                                       const bool                 stabilized)
+    {
+      constexpr unsigned int n_spans = 400;
+      const std::size_t      last = times.size() - 1, half = last / 2;
       // Mean steps of the last quarter, and of the one before the middle.
       const auto step = [&](const std::size_t k) {
         const std::size_t width = std::max<std::size_t>(1, last / 4);
         const std::size_t first = k > width ? k - width : 0;
-        return (times[k] - times[first]) / static_cast<double>(k - first);
+        return k > first ? (times[k] - times[first]) / static_cast<double>(k - first) : times[k];
       };
-      const double t = times[last], dt = step(last);
-      const double p =
-        std::clamp(std::log(dt / step(half)) / std::log(t / times[half]), 0., 1. - 1e-6);
-      return n + t / (dt * (1. - p)) * (std::pow(end / t, 1. - p) - 1.);
+      const double layer = largest > 0. ? 2.8 / largest : 0.; // time until it has passed a cell
+      const double t = times[last], dt = step(last), from = std::max(t, layer);
+      // What has come in at a side changes at the rate 1/t, once it has passed a cell.
+      const double p     = t < 4. * layer ?
+                             1. :
+                           times.size() < 4 ?
+                             0. :
+                             std::clamp(std::log(dt / step(half)) / std::log(t / times[half]), 0., 1.);
+      const double first = stages(dt, largest, stabilized), ratio = std::pow(end / t, 1. / n_spans);
+      double       n = static_cast<double>(times.size()), cost = n, s = t;
+      for (unsigned int k = 0; k < n_spans; ++k, s *= ratio)
+        {
+          const double of_span = dt * std::pow(std::max(s * std::sqrt(ratio), layer) / from, p),
+                       count   = s * (ratio - 1.) / of_span;
+          n += count;
+          cost += count * stages(of_span, largest, stabilized) / first;
+        }
+      return {n, cost};
     }
   } // namespace
 
@@ -48,6 +78,7 @@ namespace PeriDeal
     const double                                                            end,
     const std::function<void(const std::function<void(const double t)> &)> &advance,
     const Operator                                                         &op,
+    const bool                                                              stabilized,
     const MPI_Comm                                                          communicator)
   {
     constexpr double      enough = 1.; // second
@@ -56,9 +87,10 @@ namespace PeriDeal
     const auto            passed = [&] {
       return dealii::Utilities::MPI::max(processor_seconds() - start, communicator);
     };
-    const unsigned long long before = op.n_applications();
-    std::vector<double>      times; // after each step that was tried
-    double                   spent = 0., n = 0.;
+    const unsigned long long  before = op.n_applications();
+    std::vector<double>       times; // after each step that was tried
+    double                    spent = 0.;
+    std::pair<double, double> all; // steps, and what they cost
     try
       {
         advance([&](const double t) {
@@ -69,14 +101,14 @@ namespace PeriDeal
         });
         spent = passed();
         times.push_back(end);
-        n = static_cast<double>(times.size());
+        all = {times.size(), times.size()};
       }
     catch (const Enough &)
       {
-        n = n_steps_to(end, times);
+        all = steps_to(end, times, op.spectrum().sharp, stabilized);
       }
-    const double part = n / static_cast<double>(times.size());
-    return {n, static_cast<double>(op.n_applications() - before) * part, spent * part};
+    const double part = all.second / static_cast<double>(times.size());
+    return {all.first, static_cast<double>(op.n_applications() - before) * part, spent * part};
   }
 
 

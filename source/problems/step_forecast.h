@@ -24,12 +24,14 @@ namespace PeriDeal
    * from 0 towards its end for about a second of processor time.
    * @param advance to the end, calling what it is given after each step but the last
    * @param op of the steps
+   * @param stabilized explicit steps whose stages go with the length (rkc2)
    * Collective.
    */
   StepForecast forecast_steps(
     const double                                                            end,
     const std::function<void(const std::function<void(const double t)> &)> &advance,
     const Operator                                                         &op,
+    const bool                                                              stabilized,
     const MPI_Comm                                                          communicator);
 
   /** Bounds of the spectrum, and what explicit steps are stable with them. */

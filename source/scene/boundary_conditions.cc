@@ -2,10 +2,10 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
-#include <functional>
 
 namespace PeriDeal
 {
@@ -17,16 +17,17 @@ namespace PeriDeal
                                            const std::string              &where)
     {
       const std::vector<std::string> pieces = split_list(text, ',');
-      const std::size_t              n      = names.size();
-      if (pieces.size() != n)
+      if (const std::size_t n = names.size(); pieces.size() != n)
         entry_error(where,
                     "found '" + text + "', needs " +
                       (n == 1 ? "one formula." :
-                                (n == 2 ? "two" : std::to_string(n)) +
-                                  " formulas: " + join_names(names) + "."));
+                                std::to_string(n) + " formulas: " + join_names(names) + "."));
       std::vector<Expression> formulas;
-      for (const std::string &piece : pieces)
-        formulas.emplace_back(piece, where);
+      for (std::size_t k = 0; k < pieces.size(); ++k)
+        {
+          const KnownVariables known(names[k] == "coefficient" ? "x, y, z" : "x, y, z, t");
+          formulas.emplace_back(pieces[k], where);
+        }
       return formulas;
     }
 

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/coupling_control.h>
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 namespace PeriDeal
@@ -133,6 +134,7 @@ namespace PeriDeal
       error("Zone", "found '" + given + "'; did you mean '" + near + "'?");
     else
       {
+        const KnownVariables known("x, y, z");
         zone    = ZoneKind::formula;
         formula = Expression(given, where("Zone"));
         if (formula.depends_on_time())

@@ -4,6 +4,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <perideal/scene/cracks.h>
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -279,6 +280,7 @@ namespace PeriDeal
   template <int dim>
   void Cracks<dim>::parse_conductance()
   {
+    const KnownVariables known("t");
     transmission = Expression(text("Transmission"), where("Transmission"));
     if (transmission.depends_on_position())
       error("Transmission",

@@ -4,6 +4,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <perideal/scene/domain.h>
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -272,6 +273,7 @@ namespace PeriDeal
         }
     if (!coarsening.by_formula)
       return;
+    const KnownVariables known("x, y, z");
     coarsening.fine = Expression(text("Fine where"), where("Fine where"));
     if (coarsening.fine.depends_on_time())
       error("Fine where", "found '" + text("Fine where") + "'; the formula may not depend on t.");

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/elasticity_control.h>
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/warmed_by_deformation.h>
 
 namespace PeriDeal
@@ -135,6 +136,7 @@ namespace PeriDeal
 
   void ElasticityControl::parse(const Physics physics, const unsigned int dim)
   {
+    const KnownVariables known("x, y, z"); // of 'Temperature change'
     model                 = choice<ElasticModel>("Model");
     micromodulus          = choice<Micromodulus>("Micromodulus");
     plane                 = choice<PlaneState>("Plane");

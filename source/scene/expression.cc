@@ -5,6 +5,7 @@
 
 #include <perideal/base/diverged.h>
 #include <perideal/scene/expression.h>
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <muParser.h>
@@ -38,6 +39,14 @@ namespace PeriDeal
   namespace
   {
     DeferredFormulaErrors *collector = nullptr;
+
+
+    /** What messages list (KnownVariables). */
+    std::string &listed_variables()
+    {
+      static std::string list = "x, y, z, t";
+      return list;
+    }
 
 
     /** A number and nothing else. Compiling a formula takes a hundred times as long. */
@@ -128,20 +137,20 @@ namespace PeriDeal
       if (parser.GetFunDef().count(token) > 0)
         return "the function '" + token + "' needs its arguments in parentheses";
       if (token == "T")
-        return "'T': the temperature is available in formulas of the material only; known variables: x, y, z, t";
+        return "'T': the temperature is available in formulas of the material only; known variables: " +
+               listed_variables();
       if (token == "rand" || token == "rand_seed")
         return "'" + token + "': random numbers are not available, since a run must be repeatable";
       if (token == "and" || token == "or")
         return "unknown name '" + token + "'; write " + (token == "and" ? "&&" : "||");
-      const std::string variables = parser.GetVar().count("T") > 0 ? "x, y, z, t, T" : "x, y, z, t";
-      std::vector<std::string> known = {"x", "y", "z", "t"};
+      std::vector<std::string> known = split_list(listed_variables(), ',');
       for (const auto &constant : parser.GetConst())
         known.push_back(constant.first);
       for (const auto &function : parser.GetFunDef())
         known.push_back(function.first);
       const std::string nearest = token.size() > 1 ? nearest_name(token, known) : "";
       return "unknown name '" + token + "'" +
-             (nearest.empty() ? "; known variables: " + variables :
+             (nearest.empty() ? "; known variables: " + listed_variables() :
                                 "; did you mean '" + nearest + "'?");
     }
 
@@ -225,6 +234,19 @@ namespace PeriDeal
   } // namespace
 
 
+  KnownVariables::KnownVariables(const std::string &list)
+    : before(listed_variables())
+  {
+    listed_variables() = list;
+  }
+
+
+  KnownVariables::~KnownVariables()
+  {
+    listed_variables() = before;
+  }
+
+
   Expression::Expression()
     : Expression(0.)
   {}
@@ -257,7 +279,7 @@ namespace PeriDeal
     , constant(0.)
   {
     if (formula.empty())
-      entry_error(where, "is empty, needs a number or a formula of x, y, z and t.");
+      entry_error(where, "is empty, needs a number or a formula of " + listed_variables() + ".");
     if (const std::optional<double> number = plain_number(formula);
         number && std::isfinite(*number))
       {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/material.h>
 #include <perideal/scene/vector_conditions.h>
@@ -334,6 +335,7 @@ namespace PeriDeal
         if (!elastic)
           error(entry,
                 "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
+        const KnownVariables known("x, y, z");
         *list = parse_vector(text(entry), dim, where(entry));
         for (const Expression &value : *list)
           if (value.depends_on_time())

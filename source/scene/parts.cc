@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/parts.h>
 
@@ -70,7 +71,8 @@ namespace PeriDeal
 
   Expression part_formula(const std::string &text, const std::string &where)
   {
-    Expression formula(text, where);
+    const KnownVariables known("x, y, z");
+    Expression           formula(text, where);
     if (formula.depends_on_time())
       entry_error(where,
                   "the formula '" + text +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/phases.h>
 #include <perideal/scene/vector_conditions.h>
@@ -102,6 +103,7 @@ namespace PeriDeal
         slack = 1e-10 * size;
         return;
       }
+    const KnownVariables known("x, y, z");
     formula = Expression(text, where);
     if (formula.depends_on_time())
       entry_error(where, "'" + text + "' depends on t; known variables here: x, y, z.");
@@ -286,11 +288,12 @@ namespace PeriDeal
                               const bool           elastic,
                               const std::string   &where)
   {
-    const Expression formula(text, where, true);
+    const bool        knows_temperature = entry.with_temperature && !(elastic && entry.elasticity);
+    const std::string variables         = knows_temperature ? "x, y, z, T" : "x, y, z";
+    const KnownVariables known(variables);
+    const Expression     formula(text, where, true);
     if (formula.depends_on_time())
-      entry_error(where,
-                  "'" + text + "' depends on t; known variables here: x, y, z" +
-                    (entry.with_temperature ? ", T." : "."));
+      entry_error(where, "'" + text + "' depends on t; known variables here: " + variables + ".");
     if (formula.depends_on_temperature() && !entry.with_temperature)
       entry_error(where, "'" + text + "' depends on T; known variables here: x, y, z.");
     if (formula.depends_on_temperature() && elastic && entry.elasticity)

@@ -161,6 +161,25 @@ namespace PeriDeal
     }
 
 
+    /** Exchange of cells for bonds asks for the cells on a bond's way, not for its two nodes. */
+    template <int dim>
+    void note_interface_rule(Scene<dim> &scene)
+    {
+      std::vector<std::string> models;
+      if (runs(scene, ModelKind::peridynamics) &&
+          scene.peridynamics.treatment == BoundaryTreatment::exchange)
+        models.emplace_back(
+          "peridynamics ('Boundary treatment = exchange' in section 'Peridynamics')");
+      if (runs(scene, ModelKind::coupled) && scene.coupling.exchanges())
+        models.emplace_back("coupled ('Scheme = exchange' in section 'Coupling')");
+      if (!models.empty() && !is_left_out(scene.material, "Interface rule"))
+        scene.domain.notes.push_back(
+          scene.material.where("Interface rule") + " has no effect on " + join_names(models) +
+          ": a bond has the smallest conductivity of the cells on its way there, and where that jumps by more than a factor of 1.5 "
+          "cells conduct in its place, so that layers are exact. The rule is for bonds alone.");
+    }
+
+
     /** Parts that no condition names. */
     template <int dim>
     void note_unused_parts(Scene<dim> &scene)
@@ -192,6 +211,8 @@ namespace PeriDeal
         note_wetness(scene);
         note_saturation(scene);
       }
+    if (!scene.deforms)
+      note_interface_rule(scene);
     note_unused_parts(scene);
   }
 

@@ -4,6 +4,7 @@
 // Displacements and tractions of section `Boundary conditions`.
 
 #include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -128,10 +129,14 @@ namespace PeriDeal
         const FreeBranch branch = split_free(pieces[c], at);
         if (pieces[c] == free_word)
           continue;
+        if (!branch.held.empty())
+          {
+            const KnownVariables known("x, y, z");
+            condition.held[c] = Expression(branch.held, at);
+          }
         condition.values[c] = Expression(branch.value, at);
         if (branch.held.empty())
           continue;
-        condition.held[c] = Expression(branch.held, at);
         if (condition.held[c]->depends_on_time())
           entry_error(
             at,

@@ -35,6 +35,25 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** The times at which problems meet on their way from one to another. */
+    template <int dim>
+    std::vector<double> stops_between(const std::vector<Problem<dim> *> &problems,
+                                      const double                       from,
+                                      const double                       to)
+    {
+      std::vector<double> stops;
+      for (const auto &problem : problems)
+        for (const double stop : problem->stops(from, to))
+          stops.push_back(stop);
+      std::sort(stops.begin(), stops.end());
+      stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+      return stops;
+    }
+  } // namespace
+
+
   template <int dim>
   Simulation<dim>::Simulation(const Scene<dim> &scene,
                               const SceneText  &text,
@@ -369,13 +388,7 @@ namespace PeriDeal
   template <int dim>
   std::vector<double> Simulation<dim>::stops_until(const double t) const
   {
-    std::vector<double> stops;
-    for (const auto &problem : problems)
-      for (const double stop : problem->stops(place.now, t))
-        stops.push_back(stop);
-    std::sort(stops.begin(), stops.end());
-    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
-    return stops;
+    return stops_between<dim>(problems, place.now, t);
   }
 
 
@@ -397,7 +410,7 @@ namespace PeriDeal
                                   adaptation.grading->next_adaptation(place.now) :
                                   std::numeric_limits<double>::infinity();
             const double to   = std::min(stop, next);
-            advance_all(to, place.stop + 1, place.stops.size(), t);
+            advance_all(to);
             if (to == next)
               adapt(to);
           }
@@ -417,12 +430,26 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Simulation<dim>::advance_all(const double       to,
-                                    const unsigned int stop,
-                                    const unsigned int n_stops,
-                                    const double       t)
+  std::pair<unsigned int, unsigned int> Simulation<dim>::count_stops() const
   {
-    const List before_all = companions();
+    std::pair<unsigned int, unsigned int> counts = {place.stop, 0};
+    const std::vector<double>             times  = output_times();
+    for (unsigned int k = 0; tells_at_stops() && k < times.size(); ++k)
+      {
+        const unsigned int n =
+          stops_between<dim>(problems, k > 0 ? times[k - 1] : 0., times[k]).size();
+        counts.first += k < place.output ? n : 0;
+        counts.second += n;
+      }
+    return counts;
+  }
+
+
+  template <int dim>
+  void Simulation<dim>::advance_all(const double to)
+  {
+    const List before_all      = companions();
+    const auto [passed, n_all] = count_stops();
     for (; place.problem < before_all.size(); ++place.problem)
       {
         Problem<dim>  &companion = *before_all[place.problem];
@@ -441,7 +468,7 @@ namespace PeriDeal
         const unsigned int k       = place.problem - before_all.size();
         Problem<dim>      &problem = *problems[k];
         const double       before = share_done(k, to), after = share_done(k + 1, to);
-        progress.doing(problem.doing(stop, n_stops, t));
+        progress.doing(problem.doing(passed + 1, n_all, scene.time.end_time));
         if (!problem.tells_at_stops())
           progress.advancing(place.now, to, before, after);
         guards->over(problem, to, [&] {

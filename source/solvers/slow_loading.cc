@@ -66,7 +66,8 @@ namespace PeriDeal
   {
     constexpr unsigned int   most     = 40; // nodes that go on to touch by turns hardly matter
     const unsigned long long n_broken = op.n_broken_bonds();
-    tell_broken_bonds(n_broken);
+    if (op.brittle())
+      tell_broken_bonds(n_broken);
     tell_equilibrium();
     try
       {

@@ -110,6 +110,27 @@ namespace
   }
 
 
+  TEST(Progress, NobodyKnowsHowManyEquilibriaAreToCome)
+  {
+    setenv("PERIDEAL_PROGRESS", "lines", 1);
+    testing::internal::CaptureStdout();
+    {
+      Progress progress(MPI_COMM_SELF, false, 0.1);
+      progress.begin("time");
+      progress.update(0.8);
+      tell_broken_bonds(26);
+      for (int k = 0; k < 45; ++k)
+        tell_equilibrium();
+      std::this_thread::sleep_for(std::chrono::milliseconds(250));
+    }
+    unsetenv("PERIDEAL_PROGRESS");
+    const std::string text = testing::internal::GetCapturedStdout();
+    EXPECT_NE(text.find("equilibrium 45, 26 broken bonds"), std::string::npos) << text;
+    EXPECT_NE(text.find("time left unknown"), std::string::npos) << text;
+    tell_broken_bonds(0);
+  }
+
+
   TEST(Progress, QuietRunsSayNothing)
   {
     testing::internal::CaptureStdout();

@@ -65,6 +65,62 @@ namespace PeriDeal
   }
 
 
+  /** Messages list the variables that a formula may have, and no others. */
+  TEST(Scenes, known_variables)
+  {
+    struct Case
+    {
+      std::string section, entry, list; // # is the variable
+    };
+    const std::string moduli =
+      "subsection Material\nset Young modulus = 1\nset Poisson ratio = 0.3\nend\n";
+    const std::string elastic = "set Physics = elasticity\n", place = "x, y, z", all = "x, y, z, t",
+                      material = "x, y, z, T";
+    const std::vector<Case>
+      of_heat       = {{"Material", "Conductivity = 1 + #", material},
+                       {"Material", "Density = 1 + #", material},
+                       {"Initial and source", "Source = #", all},
+                       {"Boundary conditions", "Dirichlet = left: #", all},
+                       {"Boundary conditions", "Flux = left: #", all},
+                       {"Boundary conditions", "Convection = left: 1 + #, 0", place},
+                       {"Boundary conditions", "Convection = left: 1, #", all},
+                       {"Boundary conditions", "Parts = a: left if 1 + #", place},
+                       {"Cracks", "Segments = 0.2,0.5;0.8,0.5\nset Transmission = 0.5*#", "t"}},
+      of_solids     = {{"Elasticity", "Temperature change = #", place},
+                       {"Initial and source", "Body force = #, 0", all},
+                       {"Boundary conditions", "Traction = right: #, 0", all},
+                       {"Boundary conditions", "Displacement = left: #, 0", all},
+                       {"Boundary conditions", "Displacement = left: if(y + # > 2, 0, free), 0", place},
+                       {"Material", "Thermal expansion = 1 + #", place},
+                       {"Material", "Young modulus = 1 + #\nset Poisson ratio = 0.3", place}};
+    const auto with = [](const Case &one, const std::string &name) {
+      std::string entry = one.entry;
+      entry.replace(entry.find('#'), 1, name);
+      return "subsection " + one.section + "\nset " + entry + "\nend\n";
+    };
+    for (const bool solid : {false, true})
+      for (const Case &one : solid ? of_solids : of_heat)
+        {
+          const std::string head = solid ? elastic + (one.entry[0] == 'Y' ? "" : moduli) : "";
+          SCOPED_TRACE(one.section + "/" + one.entry);
+          expect_parts(fault(head + with(one, "q")), {"known variables: " + one.list + "."});
+          for (const std::string name : {"x", "y", "z", "t", "T"})
+            {
+              const std::string message = fault(head + with(one, name));
+              const bool        known   = (", " + one.list + ",").find(" " + name + ",") !=
+                                 std::string::npos;
+              EXPECT_EQ(message.find("depends on " + name) == std::string::npos &&
+                          message.find("may not depend") == std::string::npos &&
+                          message.find("'" + name + "':") == std::string::npos &&
+                          message.find("may change with") == std::string::npos &&
+                          message.find("some times only") == std::string::npos,
+                        known)
+                << name << ": " << message;
+            }
+        }
+  }
+
+
   TEST(Scenes, material_errors)
   {
     const std::string s = "Material", i = "Initial and source";
@@ -75,7 +131,7 @@ namespace PeriDeal
     expect_fault(fault(s, "Conductivity = 1 + S"),
                  s,
                  "Conductivity",
-                 {"'S'", "column 5", "x, y, z, t, T"});
+                 {"'S'", "column 5", "known variables: x, y, z, T."});
     expect_fault(fault(s, "Conductivity ="), s, "Conductivity", {"is empty"});
     expect_fault(fault(s, "Interface rule = harmonics"),
                  s,

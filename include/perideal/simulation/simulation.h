@@ -18,6 +18,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -128,11 +129,11 @@ namespace PeriDeal
     void                   find_steady_state();
     std::vector<double>    stops_until(const double t) const;
 
-    /** To a time on the way to t, the given one of some stops. */
-    void advance_all(const double       to,
-                     const unsigned int stop,
-                     const unsigned int n_stops,
-                     const double       t);
+    /** Stops that have been passed, and those of the whole run, where problems tell of them. */
+    std::pair<unsigned int, unsigned int> count_stops() const;
+
+    /** To a time on the way to the next stop. */
+    void advance_all(const double to);
 
     /**
      * The share of the run that is done when the first n problems have got to @p t and the others
