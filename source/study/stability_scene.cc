@@ -125,12 +125,12 @@ namespace PeriDeal
   {}
 
 
-  std::string StabilityScene::no_diffusion_with_bonds() const
+  std::string StabilityScene::no_diffusion_with(const ModelKind model) const
   {
     if (facts.deforms)
       return "it is of diffusion, and this scene is of elasticity";
-    if (!facts.runs(ModelKind::peridynamics))
-      return "'Models' has no peridynamics";
+    if (!facts.runs(model))
+      return "'Models' has no " + to_string(model);
     return {};
   }
 

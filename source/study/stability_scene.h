@@ -75,8 +75,8 @@ namespace PeriDeal
                  [&](const auto &scene) { build(model, scene, action); });
     }
 
-    /** Why diffusion in one of the models with bonds alone does not occur here; or empty. */
-    std::string no_diffusion_with_bonds() const;
+    /** Why diffusion in a model does not occur here; or empty. */
+    std::string no_diffusion_with(const ModelKind model) const;
 
   private:
     SceneText text_of_body(const ModelKind model, const std::vector<Setting> &settings) const;

@@ -274,13 +274,9 @@ namespace PeriDeal
 
       std::string obstacle() const override
       {
-        if (scene.facts.deforms)
-          return "it is of diffusion, and this scene is of elasticity";
-        if (scene.facts.dim != 2)
-          return "it is of plane bodies";
-        if (!scene.facts.runs(ModelKind::coupled))
-          return "'Models' has no coupled";
-        return {};
+        return scene.facts.dim == 2 || scene.facts.deforms ?
+                 scene.no_diffusion_with(ModelKind::coupled) :
+                 "it is of plane bodies";
       }
 
       std::vector<StabilityPoint> points(const bool quick) override

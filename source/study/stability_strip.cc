@@ -132,7 +132,7 @@ namespace PeriDeal
 
       std::string obstacle() const override
       {
-        return scene.no_diffusion_with_bonds();
+        return scene.no_diffusion_with(ModelKind::peridynamics);
       }
 
       std::vector<StabilityPoint> points(const bool quick) override
@@ -254,7 +254,7 @@ namespace PeriDeal
       {
         if (scene.facts.dim != 2)
           return "it is of plane bodies";
-        return scene.no_diffusion_with_bonds();
+        return scene.no_diffusion_with(ModelKind::peridynamics);
       }
 
       std::vector<StabilityPoint> points(const bool quick) override
