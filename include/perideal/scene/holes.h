@@ -72,13 +72,8 @@ namespace PeriDeal
     /**
      * A hole of a lattice has stairs in place of its rim. What of the true rim a face stands for,
      * over the area of the face: what acts on the rim acts by that. Faces around a hole have the
-<<<<<<< HEAD
      * area of its rim together, without what of it lies in another hole; those on the rim have 1.
-     * @param corners of the face of a cell
-=======
-     * area of its rim together; those on the rim have 1.
      * @param first, last opposite corners of the face of a cell
->>>>>>> review
      */
     double rim_over_face(const dealii::Point<dim> &first, const dealii::Point<dim> &last) const;
 
