@@ -108,6 +108,10 @@ def notes():
         run = run_scene(heat, more)
         check(sum("Interface rule" in note for note in run.summary["notes"]) == n, f"{rule}, {ratio}: {run.summary['notes']}")
         check(run.model(PD)["settings"]["interface rule"] == rule, "the rule is a setting")
+    for models, rule, n in ((PD, "harmonic", 1), (f"{FE}, {PD}, coupled", "minimum", 1), (PD, "arithmetic", 0), (FE, "harmonic", 0)):
+        more = {"Models": models, "Material/Interface rule": rule, "Material/Phases/Regions": "wire: circle(0.5, 0.5, 0.2)", "Material/Phases/Conductivity": "wire: 20"}
+        found = told(heat, "'Interface rule' in section 'Material' has no effect on ", more)
+        check(len(found) == n and all(("coupled" in note) == ("coupled" in models) for note in found), f"{models}, {rule}: {found}")
     check("interface rule" not in run_scene(heat, {"Cracks/Segments": ""}).model(PD)["settings"], "of one material there is none")
 
     for name, models, ratio, expected in (("pd", PD, "3", ""), ("far", PD, "9", "room around"), ("both", f"{FE}, {PD}", "9", "peridynamics has none"), ("fem", FE, "3", "")):

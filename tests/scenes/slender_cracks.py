@@ -5,10 +5,12 @@
 References: quadratic elements with the crack on faces of 640 x 40 cells (flexure, K_II = 129.0; beams with a correction 130.3) and of 256 x 32 and 512 x 64 cells (double cantilever, K_I = 32.68 by J,
 whose square differs by 7e-4 between the two).
 
-    slender_cracks.py default | ranks
+    slender_cracks.py default | told | ranks
 """
 
-from scene_test import COUPLED, FE, Comparison, check, run_parts, run_scene, scene_text
+import re
+
+from scene_test import COUPLED, FE, PD, Comparison, check, run_parts, run_scene, scene_text
 
 TIP = "crack 1 end 2"
 K_FLEXURE, K_CANTILEVER = 129.0, 32.68
@@ -74,6 +76,22 @@ def default():
     table.show()
 
 
+def told():
+    """The errors that the note expects, over those of the cells that are taken away."""
+    table = Comparison("What notes say of slender cracks, over what is")
+    for n, make, mode, reference in ((31, flexure, "II", K_FLEXURE), (31, cantilever, "I", K_CANTILEVER), (61, cantilever, "I", K_CANTILEVER)):
+        run = make(n, {"Models": f"{FE}, {COUPLED}, {PD}", "Cracks/Mesh": "removed"})
+        notes = [note for note in run.summary["notes"] if "slender arms" in note]
+        check(len(notes) == 1, f"one note: {run.summary['notes']}")
+        for model in (FE, COUPLED, PD):
+            said = re.search(r"K_I (?:up to )?(\S+) % (?:off|too \w+) and K_II (\S+) % too (\w+) \(" + model, notes[0])
+            check(said is not None, f"{model}: {notes[0]}")
+            error = 100 * gap(run, model, mode, reference)
+            table.add_limit(f"{model}, {n} cells: K_{mode} {error:+.2f} %, said {said[len(mode)]}, factor", max(float(said[len(mode)]) / abs(error), abs(error) / float(said[len(mode)])), 2)
+            check(mode == "I" or (error < 0) == (said[3] == "small"), f"{model}: {error} is too {said[3]}")
+    table.show()
+
+
 def ranks():
     """Two and four processes."""
     table = Comparison("Numbers of processes")
@@ -86,4 +104,4 @@ def ranks():
 
 
 if __name__ == "__main__":
-    run_parts(default, ranks)
+    run_parts(default, told, ranks)
