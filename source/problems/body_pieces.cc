@@ -330,7 +330,7 @@ namespace PeriDeal
     const MPI_Comm all = run.dofs().get_communicator();
     // Displacements are found to the tolerance of a solver; cells that move as they are overlap by
     // what they should have been strained.
-    constexpr double       of_displacement = 1e-6, of_places = 1e-12;
+    constexpr double       of_displacement = 1e-6, of_places = 1e-12, nearly = 1e-3;
     double                 largest = 0., farthest = 0., uneven = 0.;
     const std::vector<Box> of_pieces = boxes(u);
     for (const Box &box : of_pieces)
