@@ -7,11 +7,13 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <perideal/scene/lists.h>
+#include <perideal/solvers/round_off.h>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "body_pieces.h"
 
 namespace PeriDeal
 {
@@ -256,6 +258,31 @@ namespace PeriDeal
 
 
   template <int dim>
+  void note_equilibrium(const SolidProblem<dim> &run, const double t, const RunContext &context)
+  {
+    std::vector<std::string> &notes = context.record.notes;
+    const auto                keep  = [&](const std::string &start, const std::string &rest) {
+      const bool is_there = std::any_of(notes.begin(), notes.end(), [&](const std::string &note) {
+        return note.compare(0, start.size(), start) == 0;
+      });
+      if (!is_there && !rest.empty())
+        notes.push_back(start + rest);
+      return is_there;
+    };
+    if (const double residual = take_accepted_residual(); residual > 0.)
+      keep(
+        run.name() + ": the residual of an equilibrium fell no further than to ",
+        rounded_text(residual) +
+          " of that of the loads, above 'Tolerance' = " + number_text(run.scene.solver.tolerance) +
+          " in section 'Solver', and was accepted: round-off of the forces between nodes allows no less, since they move far more than they stretch what is between them. "
+          "A larger 'Tolerance' takes fewer iterations; fewer cells, or a body that is held so that it moves less as a whole, leave less of it.");
+    const std::string overlap = run.name() + ": pieces of the body overlap in the equilibrium";
+    if (!keep(overlap, ""))
+      keep(overlap, BodyPieces<dim>(run).overlap(t, overlap));
+  }
+
+
+  template <int dim>
   void note_end(const SolidProblem<dim> &run, const RunContext &context)
   {
     if (run.stepper)
@@ -272,6 +299,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                              \
+  template void note_equilibrium(const SolidProblem<dim> &, const double, const RunContext &); \
   template void tell_first_break(const SolidProblem<dim> &, const double, const RunContext &); \
   template void note_end(const SolidProblem<dim> &, const RunContext &);
   PERIDEAL_INSTANTIATE(1)

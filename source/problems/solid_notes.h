@@ -13,6 +13,14 @@ namespace PeriDeal
   void tell_first_break(const SolidProblem<dim> &run, const double t, const RunContext &context);
 
   /**
+   * What is wrong with the equilibrium that has been found at t: pieces of the body that overlap
+   * (BodyPieces), a residual that round-off keeps above the tolerance; each is said once.
+   * Collective. Throws UserError.
+   */
+  template <int dim>
+  void note_equilibrium(const SolidProblem<dim> &run, const double t, const RunContext &context);
+
+  /**
    * What the user should know at the end of a run: steps that became shorter, an energy balance
    * that does not close, cells turned inside out, bonds torn off beside loads. Collective.
    */

@@ -252,6 +252,7 @@ namespace PeriDeal
         solve_loading([&] { loading->renew(displacement); });
       });
     n_iterations = loading->n_iterations();
+    note_equilibrium(*this, to, context);
     tell_first_break(*this, to, context);
     told->tell(*this);
   }
@@ -426,6 +427,7 @@ namespace PeriDeal
     if (warming)
       warming->begin(*this);
     n_iterations = loading->n_iterations();
+    note_equilibrium(*this, 0., context);
     tell_first_break(*this, 0., context);
     told->tell(*this);
   }

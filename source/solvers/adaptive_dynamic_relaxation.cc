@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/solvers/round_off.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
@@ -43,13 +44,14 @@ namespace PeriDeal
       unsigned int solve(Vector &u, const double t, const double size) override
       {
         ResidualGoal goal(name(), options, size);
+        RoundOffGoal round_off(op, options, size);
         if (outdated)
           find_mass();
         op.distribute(u, t);
         op.residual(residual, u, t);
         velocity       = 0.;
         unsigned int n = 0;
-        for (; !goal.reached(residual, n); ++n)
+        for (; !round_off.reached(residual, u, n) && !goal.reached(residual, n); ++n)
           {
             const double       damping = n == 0 ? 0. : adapt(u);
             const double       keep    = (2. - damping) / (2. + damping);

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/solvers/preconditioner.h>
+#include <perideal/solvers/round_off.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
@@ -48,13 +49,14 @@ namespace PeriDeal
       unsigned int solve(Vector &u, const double t, const double size) override
       {
         ResidualGoal goal(name(), options, size);
+        RoundOffGoal round_off(op, options, size);
         op.distribute(u, t);
         op.residual(residual, u, t);
         direction      = 0.;
         double square  = 0.; // residual . P^-1 residual, of the last iteration
         step           = 0.;
         unsigned int n = 0;
-        for (; !goal.reached(residual, n); ++n)
+        for (; !round_off.reached(residual, u, n) && !goal.reached(residual, n); ++n)
           {
             precondition();
             const double now  = residual * correction;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/solvers/round_off.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -42,6 +43,7 @@ namespace PeriDeal
       {
         constexpr unsigned int period = 50;
         ResidualGoal           goal(name(), options, size);
+        RoundOffGoal           round_off(op, options, size);
         if (outdated)
           {
             stiffest    = op.spectrum().sharp;
@@ -57,7 +59,7 @@ namespace PeriDeal
         marked_residual = residual;
         choose_step();
         unsigned int n = 0;
-        for (; !goal.reached(residual, n); ++n)
+        for (; !round_off.reached(residual, u, n) && !goal.reached(residual, n); ++n)
           {
             if (n % period == period - 1)
               adapt(u);

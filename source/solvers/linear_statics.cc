@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/diverged.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
+#include <perideal/solvers/round_off.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <cmath>
@@ -22,6 +24,7 @@ namespace PeriDeal
       LinearStatics(ElasticOperator &op, const StaticOptions &options)
         : op(op)
         , solver(op, options.tolerance, options.max_iterations, options.direct_up_to)
+        , most_iterations(options.max_iterations)
       {
         AssertThrow(
           !op.nonlinear(),
@@ -57,9 +60,21 @@ namespace PeriDeal
             check_no_loose_part(op, solver.surrogate(), residual);
             is_untried = false;
           }
-        change                          = 0.;
-        const unsigned int n_iterations = solver.solve(0., 1., change, residual, size);
-        u += change;
+        change                    = 0.;
+        const double scale        = size > 0. ? size : residual.l2_norm();
+        unsigned int n_iterations = most_iterations;
+        try
+          {
+            n_iterations = solver.solve(0., 1., change, residual, size);
+            u += change;
+          }
+        catch (const Diverged &failure)
+          {
+            u += change; // the last iterate
+            if (failure.trip.monitor != "solver" || !is_round_off(u, t))
+              throw;
+            accept_residual(residual.l2_norm() / scale);
+          }
         AssertThrow(
           std::isfinite(u.l1_norm()),
           UserError(
@@ -68,10 +83,17 @@ namespace PeriDeal
       }
 
     private:
-      ElasticOperator &op;
-      LinearSolver     solver;
-      Vector           residual, change;
-      bool             is_untried = true; // later on fragments may come loose
+      bool is_round_off(const Vector &u, const double t)
+      {
+        op.residual(residual, u, t);
+        return residual.l2_norm() <= round_off_of_forces(op, u);
+      }
+
+      ElasticOperator   &op;
+      LinearSolver       solver;
+      const unsigned int most_iterations;
+      Vector             residual, change;
+      bool               is_untried = true; // later on fragments may come loose
     };
   } // namespace
 

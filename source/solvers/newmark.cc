@@ -5,6 +5,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/motion_stepper.h>
+#include <perideal/solvers/round_off.h>
 
 #include <algorithm>
 #include <cmath>
@@ -142,7 +143,8 @@ namespace PeriDeal
         const double last_change = change.l2_norm();
         change                   = u;
         change -= last;
-        if (last_change <= std::max(tolerance, 1e-11) * change.l2_norm())
+        if (last_change <= std::max(tolerance, 1e-11) * change.l2_norm() ||
+            (round >= most && now <= round_off_of_forces(op, u)))
           return true;
         std::ostringstream message;
         message << "Newton's iterations of the stepper 'newmark' did not converge at t = " << t

@@ -43,6 +43,43 @@ namespace PeriDeal
         text << ", beside the loaded side '" << places.beside_loads.begin()->first << "'";
       return text.str();
     }
+
+
+    /**
+     * The equilibrium, with the faces of cracks that touch in it: roughly solved as long as these
+     * change. @p residual is overwritten.
+     */
+    template <typename Solve>
+    void find_touching(ElasticOperator &op,
+                       StaticSolver    &solver,
+                       const double     tolerance,
+                       Vector          &u,
+                       const double     t,
+                       const double     size,
+                       Vector          &residual,
+                       const Solve     &solve_to)
+    {
+      constexpr unsigned int most  = 40;  // nodes that go on to touch by turns hardly matter
+      constexpr double       rough = 0.1; // of the residual at which a round starts
+      double                 goal  = size;
+      for (unsigned int round = 0;; ++round)
+        {
+          solve_to(goal);
+          op.distribute(u, t); // unknowns that follow from others
+          const bool changes = op.update_contact(u);
+          if ((!changes && goal <= size) || round >= most)
+            return;
+          if (changes)
+            solver.operator_changed();
+          goal = size;
+          // (The preconditioner of a body that breaks is judged by iterations of whole solutions.)
+          if (changes && size > 0. && round + 1 < most && !op.may_release_energy())
+            {
+              op.residual(residual, u, t);
+              goal = std::max(size, rough * residual.l2_norm() / tolerance);
+            }
+        }
+    }
   } // namespace
 
 
@@ -64,23 +101,20 @@ namespace PeriDeal
 
   void SlowLoading::solve(Vector &u, const double t, const bool may_be_left)
   {
-    constexpr unsigned int   most     = 40; // nodes that go on to touch by turns hardly matter
     const unsigned long long n_broken = op.n_broken_bonds();
     if (op.brittle())
       tell_broken_bonds(n_broken);
     tell_equilibrium();
     try
       {
-        // Where faces of cracks touch follows from u.
-        for (unsigned int round = 0; round == 0 || (op.update_contact(u) && round < most); ++round)
-          {
-            if (round > 0)
-              solver->operator_changed();
-            // What contact has changed by then cannot be undone.
-            const LeavableStep leavable(may_be_left && round == 0);
-            iterations += solver->solve(u, t, size);
-            op.distribute(u, t); // unknowns that follow from others
-          }
+        bool       is_first = true;
+        const auto solve_to = [&](const double goal) {
+          // What contact has changed by then cannot be undone.
+          const LeavableStep leavable(may_be_left && is_first);
+          is_first = false;
+          iterations += solver->solve(u, t, goal);
+        };
+        find_touching(op, *solver, options.tolerance, u, t, size, unbalanced, solve_to);
       }
     catch (const UserError &failure)
       {

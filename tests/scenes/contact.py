@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Faces of cracks that press on each other: at rest, in motion, on several processes; bodies and fragments that meet.
 
-    contact.py rest | torn | motion | bodies | fragments | ranks | mistakes
+    contact.py rest | torn | motion | bodies | fragments | ranks | mistakes | pieces | pieces_ranks | effort
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
 """
@@ -10,7 +10,7 @@ Bounds that follow from no theory are at most 1.6 times the gap that was measure
 import math
 
 from fracture import history
-from scene_test import QUIET, Comparison, check, check_less, check_message, run_parts, run_scene
+from scene_test import QUIET, Comparison, check, check_less, check_message, run_parts, run_scene, scene_text
 
 PRESSED, PIECES, TORN = "prm/fracture/pressed_crack.prm", "prm/fracture/struck_pieces.prm", "prm/fracture/torn_and_pressed.prm"
 BARS = "prm/fracture/colliding_bars.prm"
@@ -157,5 +157,67 @@ def mistakes():
         check_message(run_scene(PRESSED, {**asked, **settings}, expect_error=True), "'Contact' in section 'Elasticity'", *words)
 
 
+# Two blocks with a gap of 0.1 between them, of which the upper one is moved as a whole.
+BLOCKS = scene_text("""
+Dimension = 2
+Physics = elasticity
+Domain/Upper corner = 1, 1
+Domain/Cells = 20, 20
+Domain/Holes = rectangle: 0, 0.45, 1, 0.55
+Material/Young modulus = 1
+Material/Poisson ratio = 0.3
+Boundary conditions/Displacement = bottom: 0, 0 ; top: 0, -0.2*t
+Time/Time step = 0.25
+Time/End time = 1
+Output/Fields = none
+""")
+OVERLAP, NEVER = "pieces of the body overlap", {"Boundary conditions/Displacement": "bottom: 0, 0 ; top: 0, -0.0999*t"}
+DEEP = ("at t = 0.75", "is 0.05 deep", "the one about (0.5, 0.775)", "the one about (0.5, 0.225)", "'Contact = false'", "'Solver = dynamics'")
+
+
+def pieces():
+    """Separate bodies at rest that come to overlap end the run; those that do not come to it, or may, do not."""
+    # Moved by 0.1 the blocks touch, at t = 0.5; by 0.15 they are 0.05 deep in each other.
+    centers = {"Models": "peridynamics", "Domain/Nodes": "cell centers"}
+    everywhere = {"Models": "coupled", "Coupling/Zone": "everywhere"}
+    unit = {"Domain/Upper corner": "1e-3, 1e-3", "Domain/Holes": "rectangle: 0, 0.45e-3, 1e-3, 0.55e-3", "Material/Young modulus": "2e11",
+            "Boundary conditions/Displacement": "bottom: 0, 0 ; top: 0, -2e-4*t"}
+    for case in ({"Models": "finite elements"}, {"Models": "peridynamics"}, centers, everywhere):
+        check_message(run_scene(BLOCKS, case, expect_error=True), OVERLAP, *DEEP)
+        for quiet in ({**case, **NEVER}, {**case, "Time/End time": "0.5"}):
+            check(not any(OVERLAP in note for note in run_scene(BLOCKS, quiet).summary["notes"]), f"no note without an overlap: {quiet}")
+    check_message(run_scene(BLOCKS, {**unit, "Models": "finite elements"}, expect_error=True), OVERLAP, "at t = 0.75", "is 5e-05 deep")
+    through = run_scene(BLOCKS, {**OPEN, "Models": "finite elements"})
+    found = [note for note in through.summary["notes"] if OVERLAP in note]
+    check(len(found) == 1 and "is 0.05 deep" in found[0], f"one note where they may pass through each other: {found}")
+    # A ring around a disc, whose boxes overlap from the start, turned into space, and bars in 1D.
+    ring = {"Domain/Lower corner": "-1, -1", "Domain/Upper corner": "1, 1", "Domain/Cells": "40, 40", "Domain/Holes": "", "Models": "finite elements"}
+    inner = "rectangle: -0.6, -0.6, 0.6, -0.4 ; rectangle: -0.6, 0.4, 0.6, 0.6 ; rectangle: -0.6, -0.4, -0.4, 0.4 ; rectangle: 0.4, -0.4, 0.6, 0.4"
+    moved = {**ring, "Domain/Holes": inner, "Boundary conditions/Parts": "core: region max(abs(x), abs(y)) < 0.41"}
+    free = "bottom: 0, 0 ; core: {}*t, 0"
+    check(not any(OVERLAP in note for note in run_scene(BLOCKS, {**moved, "Boundary conditions/Displacement": free.format("0.19")}).summary["notes"]), "a core that moves less than its gap")
+    check_message(run_scene(BLOCKS, {**moved, "Boundary conditions/Displacement": free.format("0.24")}, expect_error=True), OVERLAP, "is 0.04 deep", "at t = 1:")
+    space = {"Dimension": "3", "Domain/Upper corner": "1, 1, 1", "Domain/Cells": "4, 20, 4", "Models": "finite elements",
+             "Boundary conditions/Displacement": "bottom: 0, 0, 0 ; top: 0, -0.2*t, 0"}
+    check_message(run_scene(BLOCKS, space, expect_error=True), OVERLAP, "is 0.05 deep")
+
+
+def pieces_ranks():
+    """The same words on 2 and 4 processes."""
+    said = {n: run_scene(BLOCKS, {"Models": "peridynamics"}, ranks=n, expect_error=True).stderr for n in (1, 2, 4)}
+    for n in (2, 4):
+        check(said[1].split("overlap")[1].split(". No cells")[0] == said[n].split("overlap")[1].split(". No cells")[0], f"{n} processes:\n{said[1]}\n{said[n]}")
+
+
+def effort():
+    """Rounds in which nodes begin to touch are solved roughly; what they lead to is an equilibrium."""
+    table = Comparison("Iterations with contact over those without")
+    pressed, free = (run_scene(PRESSED, {**QUIET, **more, "Cracks/Segments": "-0.8,-0.4 ; 0.8,0.4"}) for more in ({}, OPEN))
+    for model in MODELS:
+        table.add_limit(model, pressed.model(model)["iterations"] / free.model(model)["iterations"], 9)
+        table.add(f"{model}: force on the bottom over that on the top", -pressed.total("force on bottom in y", model) / pressed.total("force on top in y", model), 1, absolute=1e-7)
+    table.show()
+
+
 if __name__ == "__main__":
-    run_parts(rest, torn, motion, bodies, fragments, ranks, mistakes)
+    run_parts(rest, torn, motion, bodies, fragments, ranks, mistakes, pieces, pieces_ranks, effort)

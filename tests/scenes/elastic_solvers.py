@@ -5,11 +5,12 @@
     elastic_solvers.py statics   the solvers agree; iterations against L/delta (fine_statics: up to 64)
     elastic_solvers.py waves     wave speed, the exact dispersion of the lattice, orders in time, energies
     elastic_solvers.py ranks     equal results on 1, 2 and 4 processes
+    elastic_solvers.py round_off what round-off allows is enough, in any units
 """
 
 import math
 
-from scene_test import FE, PD, check, check_close, check_less, observed_orders, print_table, run_parts, run_scene, scene_text
+from scene_test import FE, PD, check, check_close, check_less, check_message, observed_orders, print_table, run_parts, run_scene, scene_text
 
 
 PLATE = scene_text("""
@@ -153,5 +154,42 @@ def ranks():
                 check_close(displacements(run, model), displacements(runs[0], model), relative=allowed, what=f"{what}, {model}, {n} processes")
 
 
+CANTILEVER = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = finite elements
+Domain/Upper corner = 100, 1
+Domain/Cells = 200, 2
+Material/Poisson ratio = 0.3
+Boundary conditions/Displacement = left: 0, 0
+Elasticity/Solver = conjugate gradients
+Elasticity/Preconditioner = none
+Time/Time step = 1
+Time/End time = 1
+Output/Fields = none
+""")
+
+
+def round_off():
+    """
+    A slender cantilever moves 1e6 times as far as its cells stretch: residuals, found anew each 50 iterations, fall to some 1e-8. The support
+    bears the load, and the displacement is that of a direct solution.
+    """
+    said = "the residual of an equilibrium fell no further than to"
+    for modulus in (1., 1e-3, 2e11, 1e15):
+        load = 1e-9 * modulus
+        scene = {"Material/Young modulus": f"{modulus:g}", "Boundary conditions/Traction": f"right: 0, {load:g}*t"}
+        case = f"E = {modulus:g}"
+        run = run_scene(CANTILEVER, {**scene, "Solver/Maximum iterations": "30000"})
+        direct = run_scene(CANTILEVER, {**scene, "Elasticity/Preconditioner": "multigrid", "Solver/Tolerance": "1e-7"})
+        check(sum(said in note and "'Tolerance' = 1e-10" in note for note in run.summary["notes"]) == 1, f"{case}: one note")
+        check(not any(said in note for note in direct.summary["notes"]), f"{case}: no note where the tolerance is reached")
+        check_close(run.total("force on left in y", FE), -load, relative=1e-6, what=f"{case}: force on the support")
+        check_close(run.total("strain energy", FE), direct.total("strain energy", FE), relative=1e-5, what=f"{case}: strain energy")
+        # Far above round-off it remains an error.
+        stopped = run_scene(CANTILEVER, {**scene, "Solver/Maximum iterations": "900"}, expect_error=True)
+        check_message(stopped, "stopped after 900 iterations", "'Tolerance'")
+
+
 if __name__ == "__main__":
-    run_parts(statics, waves, ranks, fine_statics=lambda: statics((4, 8, 16, 32, 64)))
+    run_parts(statics, waves, ranks, round_off, fine_statics=lambda: statics((4, 8, 16, 32, 64)))
