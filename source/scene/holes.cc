@@ -62,15 +62,18 @@ namespace PeriDeal
 
 
     /** The hole with the rim nearest to a point, of the rims that lie in no other hole there. */
-    const Hole &hole_nearest_to(const Point<2> &p, const std::vector<Hole> &holes)
+    const Hole &hole_nearest_to(const Point<2>          &p,
+                                const std::vector<Hole> &holes,
+                                const double             tiny)
     {
       const auto hidden_and_far = [&](const Hole &hole) {
         const Point<2> foot = hole.point_on_rim(hole.place_on_rim(p));
-        return std::make_pair(
-          std::any_of(holes.begin(),
-                      holes.end(),
-                      [&](const Hole &other) { return &other != &hole && other.contains(foot); }),
-          std::abs(hole.distance(p)));
+        return std::make_pair(std::any_of(holes.begin(),
+                                          holes.end(),
+                                          [&](const Hole &other) {
+                                            return &other != &hole && other.distance(foot) < -tiny;
+                                          }),
+                              std::abs(hole.distance(p)));
       };
       return *std::min_element(holes.begin(), holes.end(), [&](const Hole &one, const Hole &other) {
         return hidden_and_far(one) < hidden_and_far(other);
@@ -298,7 +301,7 @@ namespace PeriDeal
         // In the plane of the holes a face is a line.
         const Point<2> a(first[0], first[1]), b(last[0], last[1]);
         const double   length = a.distance(b), tiny = 1e-9 * length;
-        const Hole    &hole = hole_nearest_to(a, holes), &next = hole_nearest_to(b, holes);
+        const Hole &hole = hole_nearest_to(a, holes, tiny), &next = hole_nearest_to(b, holes, tiny);
         if (!(length > 0.) ||
             (std::abs(hole.distance(a)) < tiny && std::abs(next.distance(b)) < tiny &&
              std::abs(hole.distance(a + 0.5 * (b - a))) < tiny))
