@@ -61,23 +61,48 @@ namespace PeriDeal
     }
 
 
-    /** The hole with the rim nearest to a point, of the rims that lie in no other hole there. */
-    const Hole &hole_nearest_to(const Point<2>          &p,
-                                const std::vector<Hole> &holes,
-                                const double             tiny)
+    struct PointOnRim
     {
-      const auto hidden_and_far = [&](const Hole &hole) {
-        const Point<2> foot = hole.point_on_rim(hole.place_on_rim(p));
-        return std::make_pair(std::any_of(holes.begin(),
-                                          holes.end(),
-                                          [&](const Hole &other) {
-                                            return &other != &hole && other.distance(foot) < -tiny;
-                                          }),
-                              std::abs(hole.distance(p)));
-      };
-      return *std::min_element(holes.begin(), holes.end(), [&](const Hole &one, const Hole &other) {
-        return hidden_and_far(one) < hidden_and_far(other);
-      });
+      const Hole *hole;
+      Point<2>    place;
+    };
+
+
+    /** The nearest points of a circle, or of each edge of a polygon. */
+    std::vector<PointOnRim> nearest_on_rim(const Point<2> &p, const Hole &hole)
+    {
+      if (hole.corners.empty())
+        return {{&hole, hole.point_on_rim(hole.place_on_rim(p))}};
+      std::vector<PointOnRim> points;
+      for (std::size_t i = 0; i < hole.corners.size(); ++i)
+        {
+          const Point<2>     a    = hole.corners[i];
+          const Tensor<1, 2> edge = hole.corners[(i + 1) % hole.corners.size()] - a;
+          points.push_back(
+            {&hole, a + std::clamp((p - a) * edge / edge.norm_square(), 0., 1.) * edge});
+        }
+      return points;
+    }
+
+
+    /** The nearest point of the rims, of what of them lies in no other hole if there is any. */
+    PointOnRim nearest_on_rims(const Point<2> &p, const std::vector<Hole> &holes, const double tiny)
+    {
+      PointOnRim nearest{};
+      auto       least = std::make_pair(true, std::numeric_limits<double>::max());
+      for (const Hole &hole : holes)
+        for (const PointOnRim &point : nearest_on_rim(p, hole))
+          {
+            const bool hidden = std::any_of(holes.begin(), holes.end(), [&](const Hole &other) {
+              return &other != &hole && other.distance(point.place) < -tiny;
+            });
+            if (const auto found = std::make_pair(hidden, p.distance(point.place)); found < least)
+              {
+                nearest = point;
+                least   = found;
+              }
+          }
+      return nearest;
     }
 
 
@@ -299,17 +324,18 @@ namespace PeriDeal
         if (holes.empty())
           return 1.;
         // In the plane of the holes a face is a line.
-        const Point<2> a(first[0], first[1]), b(last[0], last[1]);
-        const double   length = a.distance(b), tiny = 1e-9 * length;
-        const Hole &hole = hole_nearest_to(a, holes, tiny), &next = hole_nearest_to(b, holes, tiny);
-        if (!(length > 0.) ||
-            (std::abs(hole.distance(a)) < tiny && std::abs(next.distance(b)) < tiny &&
-             std::abs(hole.distance(a + 0.5 * (b - a))) < tiny))
+        const Point<2>   a(first[0], first[1]), b(last[0], last[1]);
+        const double     length = a.distance(b), tiny = 1e-9 * length;
+        const PointOnRim from = nearest_on_rims(a, holes, tiny),
+                         to   = nearest_on_rims(b, holes, tiny);
+        if (!(length > 0.) || (a.distance(from.place) < tiny && b.distance(to.place) < tiny &&
+                               std::abs(from.hole->distance(a + 0.5 * (b - a))) < tiny))
           return 1.;
-        if (&hole == &next)
-          return hole.rim_between(a, b) / length;
-        const Point<2> joint = entry_from(a, hole, next, 4. * length);
-        return (hole.rim_between(a, joint) + next.rim_between(joint, b)) / length;
+        if (from.hole == to.hole)
+          return from.hole->rim_between(from.place, to.place) / length;
+        const Point<2> joint = entry_from(from.place, *from.hole, *to.hole, 4. * length);
+        return (from.hole->rim_between(from.place, joint) + to.hole->rim_between(joint, to.place)) /
+               length;
       }
     return 1.;
   }
