@@ -72,11 +72,11 @@ namespace PeriDeal
     }
 
 
-    /** Sides beside a crack, along which it runs, are nearer than its ends are to each other. */
+    /** A crack is twice as long as the arms beside it are high, for each of its ends. */
     bool is_slender(const CrackAlongAxis &crack)
     {
       return crack.beyond.size() > 0 && crack.arm > 0. &&
-             crack.length > 0.95 * crack.arm * crack.beyond.size();
+             crack.length > 2. * crack.arm * crack.beyond.size();
     }
   } // namespace
 
@@ -207,6 +207,8 @@ namespace PeriDeal
               parts.push_back("K_I up to " + rounded_text(100. * (removed ? 0.25 : 0.5) * cell) +
                               " % off and K_II " + rounded_text(60. * cell) +
                               " % too small (peridynamics)");
+            if (parts.empty())
+              continue;
             notes.push_back(
               "crack " + std::to_string(k + 1) + " (section 'Cracks') parts slender arms" +
               (removed ? ", which the cells that it takes away ('Mesh = removed') make thinner" :

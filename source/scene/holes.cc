@@ -93,6 +93,8 @@ namespace PeriDeal
       for (const Hole &hole : holes)
         for (const PointOnRim &point : nearest_on_rim(p, hole))
           {
+            if (!least.first && p.distance(point.place) >= least.second)
+              continue;
             const bool hidden = std::any_of(holes.begin(), holes.end(), [&](const Hole &other) {
               return &other != &hole && other.distance(point.place) < -tiny;
             });

@@ -71,7 +71,7 @@ namespace PeriDeal
         catch (const Diverged &failure)
           {
             u += change; // the last iterate
-            if (failure.trip.monitor != "solver" || !is_round_off(u, t))
+            if (failure.trip.monitor != "solver" || !is_round_off(u, t, scale))
               throw;
             accept_residual(residual.l2_norm() / scale);
           }
@@ -83,10 +83,10 @@ namespace PeriDeal
       }
 
     private:
-      bool is_round_off(const Vector &u, const double t)
+      bool is_round_off(const Vector &u, const double t, const double scale)
       {
         op.residual(residual, u, t);
-        return residual.l2_norm() <= round_off_of_forces(op, u);
+        return residual.l2_norm() <= round_off_of_forces(op, u, scale);
       }
 
       ElasticOperator   &op;

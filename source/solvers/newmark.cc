@@ -144,7 +144,7 @@ namespace PeriDeal
         change                   = u;
         change -= last;
         if (last_change <= std::max(tolerance, 1e-11) * change.l2_norm() ||
-            (round >= most && now <= round_off_of_forces(op, u)))
+            (round >= most && now <= round_off_of_forces(op, u, size)))
           return true;
         std::ostringstream message;
         message << "Newton's iterations of the stepper 'newmark' did not converge at t = " << t

@@ -13,13 +13,14 @@ namespace PeriDeal
   }
 
 
-  double round_off_of_forces(const ElasticOperator &op, const Vector &u)
+  double round_off_of_forces(const ElasticOperator &op, const Vector &u, const double size)
   {
-    constexpr double several = 16.;
+    constexpr double several = 16., least_digits = 1e-4;
     Vector           sizes(u);
     sizes.scale(op.diagonal());
     op.clear_constrained(sizes);
-    return several * std::numeric_limits<double>::epsilon() * sizes.l2_norm();
+    return std::min(several * std::numeric_limits<double>::epsilon() * sizes.l2_norm(),
+                    least_digits * size);
   }
 
 
@@ -63,7 +64,7 @@ namespace PeriDeal
     lowest                     = std::numeric_limits<double>::max();
     next                       = n + std::max(shortest, n / 4);
     if (!(now > options.tolerance * size) || !(no_longer_falls || is_last) ||
-        now > round_off_of_forces(op, u))
+        now > round_off_of_forces(op, u, size))
       return false;
     accept_residual(now / size);
     return true;

@@ -7,6 +7,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
+#include <perideal/solvers/round_off.h>
 #include <perideal/solvers/slow_loading.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -102,8 +103,7 @@ namespace PeriDeal
   void SlowLoading::solve(Vector &u, const double t, const bool may_be_left)
   {
     const unsigned long long n_broken = op.n_broken_bonds();
-    if (op.brittle())
-      tell_broken_bonds(n_broken);
+    tell_broken_bonds(op.brittle() ? n_broken : std::numeric_limits<unsigned long long>::max());
     tell_equilibrium();
     try
       {
@@ -211,6 +211,7 @@ namespace PeriDeal
 
   void SlowLoading::begin(Vector &u, const double t)
   {
+    take_accepted_residual(); // of a run that ended in between
     size = start_statics(op, u, t, options);
     last = u;
     solve(u, t);

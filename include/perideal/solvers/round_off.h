@@ -12,9 +12,11 @@ namespace PeriDeal
   /**
    * The largest l2 norm that round-off may leave of forces on free unknowns at u: machine epsilon
    * times the forces that balance each other at a node, for which the diagonal of K times the
-   * displacement stands, and a factor of 16 for their number. Collective.
+   * displacement stands, and a factor of 16 for their number. No more than 1e-4 of what the
+   * tolerance refers to: a part that nothing holds goes so far that round-off would allow anything.
+   * Collective.
    */
-  double round_off_of_forces(const ElasticOperator &op, const Vector &u);
+  double round_off_of_forces(const ElasticOperator &op, const Vector &u, const double size);
 
   /**
    * A residual above the tolerance has been accepted, as round-off allows no less: its norm over
