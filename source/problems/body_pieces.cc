@@ -419,8 +419,8 @@ namespace PeriDeal
       is_off,
       UserError(
         start + text(deep, t) +
-        "in motion they do, by 'Models = peridynamics' with 'Solver = dynamics' and 'Kinematics = full' in section 'Elasticity'. Use that, load them so that they do not meet, join them by cells, "
-        "or let them pass through each other: 'Contact = false' in section 'Elasticity'."));
+        "in motion they do, by 'Models = peridynamics' with 'Solver = dynamics' and 'Kinematics = full' in section 'Elasticity'. Use that, load them so that they do not meet (with 'Kinematics = linear' all results go with the load, so that a small one will do), join them by cells, "
+        "or let them pass through each other: 'Contact = false' in section 'Elasticity', which holds for the faces of cracks, too."));
     return text(deep, t) +
            "'Contact = false' in section 'Elasticity' lets them pass through each other.";
   }
