@@ -9,19 +9,19 @@ usage()
     cat <<END
 Usage: tests/distributions/debian_13.sh [FOLDER] [--only COMMAND]
 
-Makes a Debian 13 (trixie) in FOLDER (default: /var/tmp/perideal_debian_13) with debootstrap, puts a clean clone of this repository's
+Makes a Debian 13 (trixie) in FOLDER (default: build/debian_13 of this repository) with debootstrap, puts a clean clone of this repository's
 last commit into it, and there runs, by chroot and with nothing but what ./run installs:
 
   ./run prm/quick_start.prm
   ./check --quick
 
 With --only that command in place of both: --only "./run prm/quick_start.prm -n 2". Needs root, debootstrap, git, 8 GB and a mirror of
-Debian (DEBIAN_MIRROR, default http://deb.debian.org/debian). The packages, the clone's build and ccache stay in FOLDER, so that the next
+Debian (DEBIAN_MIRROR, default that of debootstrap). The packages, the clone's build and ccache stay in FOLDER, so that the next
 call takes what has not changed. RELEASE=sid or another name makes another Debian. Ends with the first exit status that is not 0.
 END
 }
 
-folder=/var/tmp/perideal_debian_13
+folder=$root/build/debian_13
 commands=("./run prm/quick_start.prm" "./check --quick")
 while [ $# -gt 0 ]; do
     case $1 in
@@ -43,7 +43,7 @@ while [ $# -gt 0 ]; do
     shift
 done
 release=${RELEASE:-trixie}
-mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
+mirror=${DEBIAN_MIRROR:-}
 
 [ "$(id -u)" = 0 ] || { echo "Only root can change to another root folder." >&2; exit 1; }
 for program in debootstrap git unshare chroot; do
@@ -63,14 +63,14 @@ inside()
             mount --bind "$packages" "$system/var/cache/apt/archives" || exit 1
         shift 2
         exec chroot "$system" /usr/bin/env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
-            sh -c "cd /root/perideal && $1"' sh "$system" "$folder/packages" "$1" </dev/null
+            sh -c "cd perideal && $1"' sh "$system" "$folder/packages" "$1" </dev/null
 }
 
 # The system, made under another name until it is whole.
 if [ ! -d "$system" ]; then
     echo "Making $release in $system ..."
     rm -rf "$system.part"
-    debootstrap --variant=minbase --cache-dir="$folder/packages" "$release" "$system.part" "$mirror" >"$folder/debootstrap.log" 2>&1 || {
+    debootstrap --variant=minbase --cache-dir="$folder/packages" "$release" "$system.part" ${mirror:+"$mirror"} >"$folder/debootstrap.log" 2>&1 || {
         tail -n 5 "$folder/debootstrap.log"
         echo "debootstrap failed (log: $folder/debootstrap.log)."
         exit 1
@@ -82,7 +82,7 @@ fi
 cp /etc/resolv.conf "$system/etc/resolv.conf"
 
 # The last commit and nothing else; what was built of an earlier one stays.
-clone=$system/root/perideal
+clone=$system/perideal
 if [ ! -d "$clone/.git" ]; then
     git clone -q --no-hardlinks "$root" "$clone" || exit 1
 fi
