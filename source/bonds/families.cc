@@ -73,6 +73,19 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Beside finite elements what passes through a crack in the mesh passes between its pairs of
+     * nodes, and nothing through bonds. */
+    template <int dim>
+    double contact_of_bonds(const BodyParameters<dim> &body, const HaloAround halo)
+    {
+      const double contact = body.cracks.contact_conductance;
+      return halo != HaloAround::nodes && body.cracks.double_nodes() && contact > 0. ? 0. : contact;
+    }
+  } // namespace
+
+
   template <int dim>
   Families<dim>::Families(Nodes<dim>                &nodes,
                           const BodyParameters<dim> &body,
@@ -84,7 +97,7 @@ namespace PeriDeal
     , crack_set(topology,
                 body.crack_history(),
                 cuts_at_tips(body, halo),
-                body.cracks.contact_conductance,
+                contact_of_bonds(body, halo),
                 voids.get(),
                 body.broken_bonds_conduct,
                 body.cuts_in_part_at_tips())

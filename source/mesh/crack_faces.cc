@@ -115,19 +115,29 @@ namespace PeriDeal
     }
 
 
+    /** The middle of a cell, and the distance of its farthest corner from there. */
+    template <int dim>
+    std::pair<Point<dim>, double> ball_around(const std::vector<Point<dim>> &p,
+                                              const CellData<dim>           &cell)
+    {
+      Point<dim> center;
+      for (const unsigned int v : cell.vertices)
+        center += (p[v] - Point<dim>()) / static_cast<double>(cell.vertices.size());
+      double size = 0.;
+      for (const unsigned int v : cell.vertices)
+        size = std::max(size, p[v].distance(center));
+      return {center, size};
+    }
+
+
     /** How much of a crack a cell holds, its faces included. */
     template <int dim>
     double measure_in_cell(const std::vector<Point<dim>> &p,
                            const CellData<dim>           &cell,
                            const CrackGeometry<dim>      &crack)
     {
-      constexpr double slack = 1e-8; // outwards, relative to the cell: its faces belong to it
-      Point<dim>       center;
-      for (const unsigned int v : cell.vertices)
-        center += (p[v] - Point<dim>()) / static_cast<double>(cell.vertices.size());
-      double size = 0.;
-      for (const unsigned int v : cell.vertices)
-        size = std::max(size, p[v].distance(center));
+      constexpr double slack    = 1e-8; // outwards, relative to the cell: its faces belong to it
+      const auto [center, size] = ball_around(p, cell);
       if (!crack.is_near(center, 1.01 * size))
         return 0.;
       std::vector<Point<dim>> part = crack.corners();
@@ -143,18 +153,26 @@ namespace PeriDeal
       return measure<dim>(part);
     }
 
-    /** The (at most two) cells on each face, by the face's sorted vertices. */
+    /**
+     * The (at most two) cells on each face, by the face's sorted vertices.
+     * @param crack if given, of the faces near it
+     */
     template <int dim>
-    std::map<FaceKey<dim>, std::vector<unsigned int>> cells_of_faces(const CoarseMesh<dim> &mesh)
+    std::map<FaceKey<dim>, std::vector<unsigned int>> cells_of_faces(
+      const CoarseMesh<dim>    &mesh,
+      const CrackGeometry<dim> *crack = nullptr)
     {
       std::map<FaceKey<dim>, std::vector<unsigned int>> cells;
       for (unsigned int c = 0; c < mesh.cells.size(); ++c)
-        for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell; ++f)
-          {
-            FaceKey<dim> key = face_vertices<dim>(mesh.cells[c], f);
-            std::sort(key.begin(), key.end());
-            cells[key].push_back(c);
-          }
+        if (const auto ball = crack ? ball_around(mesh.vertices, mesh.cells[c]) :
+                                      std::pair<Point<dim>, double>();
+            !crack || crack->is_near(ball.first, 1.01 * ball.second))
+          for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell; ++f)
+            {
+              FaceKey<dim> key = face_vertices<dim>(mesh.cells[c], f);
+              std::sort(key.begin(), key.end());
+              cells[key].push_back(c);
+            }
       return cells;
     }
 
@@ -186,7 +204,7 @@ namespace PeriDeal
   double measure_on_faces(const CoarseMesh<dim> &mesh, const CrackGeometry<dim> &crack)
   {
     double sum = 0.;
-    for (const auto &[key, cells] : cells_of_faces(mesh))
+    for (const auto &[key, cells] : cells_of_faces(mesh, &crack))
       if (cells.size() == 2 && on_crack(mesh.vertices, key, crack))
         for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell; ++f)
           {

@@ -11,8 +11,8 @@
 #include <perideal/mesh/crack_faces.h>
 #include <perideal/mesh/grading.h>
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/mesh/msh_check.h>
 #include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/msh_file.h>
 
 #include <cmath>
 #include <map>
@@ -159,14 +159,7 @@ namespace PeriDeal
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         try
           {
-            std::string fault;
-            text = read_file(file_name, most_bytes_of_data, fault);
-            AssertThrow(fault.empty(),
-                        UserError("'Mesh file' in section 'Domain': '" + file_name + "' " + fault +
-                                  places_looked_at(file_name, scene_folder)));
-            MshMesh mesh = parse_msh(text, file_name, dim);
-            check_msh(mesh, file_name, dim);
-            text = text_of_msh(mesh, dim);
+            text = text_of_msh(read_msh(file_name, scene_folder, dim), dim);
           }
         catch (const UserError &error)
           {

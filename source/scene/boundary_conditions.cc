@@ -4,6 +4,7 @@
 #include <perideal/scene/boundary_conditions.h>
 #include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/quoted.h>
 
 #include <algorithm>
 
@@ -32,16 +33,19 @@ namespace PeriDeal
     }
 
 
-    std::string unknown_side(const std::string       &name,
-                             std::vector<std::string> known,
-                             const std::vector<Part> &parts,
-                             const bool               box_sides)
+    /** @param listed names as they are to be shown */
+    std::string unknown_side(const std::string              &name,
+                             std::vector<std::string>        known,
+                             const std::vector<std::string> &listed,
+                             const std::vector<Part>        &parts,
+                             const bool                      box_sides)
     {
       std::string text = "unknown side '" + name + "'; the sides ";
       if (known.empty())
-        text += "of this mesh file are its boundary ids (numbers), it has no physical names.";
+        text += "of this mesh are its boundary ids (numbers), it has no names.";
       else
-        text += "are: " + join_names(known) + (box_sides ? "." : ", or boundary ids (numbers).");
+        text += std::string(box_sides ? "are: " : "of this mesh, with their boundary ids, are: ") +
+                join_names(listed) + ".";
       if (parts.empty())
         return text + did_you_mean(name, known);
       std::vector<std::string> of_parts;
@@ -49,6 +53,27 @@ namespace PeriDeal
         of_parts.push_back(part.name);
       known.insert(known.end(), of_parts.begin(), of_parts.end());
       return text + " Parts: " + join_names(of_parts) + "." + did_you_mean(name, known);
+    }
+
+
+    using Numbers = std::map<std::string, dealii::types::boundary_id>;
+
+    /** A side without a group has the number 0. */
+    bool is_id(const Numbers &numbers, const std::string &name)
+    {
+      return name == "0" || std::any_of(numbers.begin(), numbers.end(), [&](const auto &side) {
+               return std::to_string(side.second) == name;
+             });
+    }
+
+
+    std::vector<std::string> with_numbers(std::vector<std::string> names, const Numbers &numbers)
+    {
+      for (std::string &name : names)
+        if (const auto side = numbers.find(name);
+            side != numbers.end() && std::to_string(side->second) != name)
+          name += " (" + std::to_string(side->second) + ")";
+      return names;
     }
   } // namespace
 
@@ -74,7 +99,7 @@ namespace PeriDeal
     : SceneSection("Boundary conditions")
   {
     const std::string sides =
-      " Sides: left, right (x), bottom, top (y), back, front (z), hole; of a mesh file its boundary ids and physical names; "
+      " Sides: left, right (x), bottom, top (y), back, front (z), hole; of a mesh file its boundary ids and physical names (those with `:`, `;` or `,` in double quotation marks); "
       "or names of `Parts`.";
     declare(
       "Parts",
@@ -188,14 +213,20 @@ namespace PeriDeal
     dealii::types::boundary_id id = 0;
     if (const auto physical = physical_names.find(name); physical != physical_names.end())
       id = physical->second;
-    else if (!box_sides && name.find_first_not_of("0123456789") == std::string::npos)
+    else if (const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
+             !box_sides && is_number && (physical_names.empty() || is_id(physical_names, name)))
       id = parse_whole_number(name, where(entry), first_part_id - 1);
     else
       {
         const std::vector<std::string> names = side_names();
         const auto                     found = std::find(names.begin(), names.end(), name);
         if (found == names.end() || !box_sides)
-          error(entry, unknown_side(name, names, or_part ? parts : std::vector<Part>(), box_sides));
+          error(entry,
+                unknown_side(name,
+                             names,
+                             with_numbers(names, physical_names),
+                             or_part ? parts : std::vector<Part>(),
+                             box_sides));
         id = name == "hole" ? hole_boundary_id : static_cast<unsigned int>(found - names.begin());
       }
     used_names.try_emplace(id, name);
@@ -206,8 +237,13 @@ namespace PeriDeal
   template <int dim>
   void BoundaryConditions<dim>::parse_parts()
   {
-    parts.clear();
     const std::string entry = "Parts";
+    // Those of the mesh file are there already, and have no id yet.
+    parts.erase(
+      std::remove_if(parts.begin(), parts.end(), [](const Part &part) { return part.id != 0; }),
+      parts.end());
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      parts[k].id = first_part_id + k;
     for (const std::string &piece : split_list(text(entry), ';'))
       {
         const auto [name, value] = name_and_value(piece, where(entry));
@@ -303,9 +339,11 @@ namespace PeriDeal
   void BoundaryConditions<dim>::parse_symmetry()
   {
     symmetry.clear();
-    std::string names = text("Symmetry");
-    std::replace(names.begin(), names.end(), ';', ',');
-    for (const std::string &name : split_list(names, ','))
+    std::vector<std::string> names;
+    for (const std::string &piece : split_list(text("Symmetry"), ';'))
+      for (const std::string &name : split_list(piece, ','))
+        names.push_back(unquoted(name));
+    for (const std::string &name : names)
       {
         const dealii::types::boundary_id id = side_id(name, "Symmetry");
         if (part(id) != nullptr)
@@ -418,79 +456,6 @@ namespace PeriDeal
         condition.rate = entry == "Velocity";
         parse_components(text, dim, entry != "Traction", at, condition);
       });
-  }
-
-
-  template <int dim>
-  void BoundaryConditions<dim>::refuse_other_physics(const Physics physics,
-                                                     const bool    with_heat) const
-  {
-    const bool elastic = physics == Physics::elasticity;
-    const auto refuse  = [&](const std::string &entry, const std::string &remedy) {
-      if (is_given(entry))
-        error(entry,
-              elastic ? "is for diffusion; 'Physics' is 'elasticity'. Use " + remedy +
-                          ", or 'Temperature change = computed' in section 'Elasticity'." :
-                         "is for 'Physics = elasticity'; 'Physics' is '" +
-                          names_of(physics).physics + "'. Use " + remedy + ".");
-    };
-    if (elastic && with_heat)
-      return;
-    if (elastic)
-      {
-        refuse("Dirichlet", "'Displacement'");
-        for (const TransferKind &kind : transfer_kinds())
-          refuse(kind.entry, kind.fixes_level ? "'Displacement' or 'Traction'" : "'Traction'");
-        return;
-      }
-    refuse("Displacement", "'Dirichlet'");
-    refuse("Velocity", "'Dirichlet'");
-    refuse("Traction", "'Flux'");
-    refuse("Displacement layer", "'Boundary treatment' in section 'Peridynamics'");
-    refuse("Traction layer", "'Flux treatment' in section 'Peridynamics'");
-  }
-
-
-  template <int dim>
-  void BoundaryConditions<dim>::check_vector_conditions() const
-  {
-    if (displacement_layer > 0. && displacement.empty())
-      error("Displacement layer", "has no effect: no side is named in 'Displacement'.");
-    if (traction_layer > 0. && traction.empty())
-      error("Traction layer", "has no effect: no side is named in 'Traction'.");
-    for (const VectorCondition &load : traction)
-      {
-        for (const VectorCondition &grip : displacement)
-          for (unsigned int c = 0; grip.id == load.id && c < dim; ++c)
-            if (grip.values[c] && !grip.held[c] && !is_zero(*load.values[c]))
-              error(
-                "Traction",
-                "the side '" + load.name + "' has a displacement in " + "xyz"[c] + " by '" +
-                  (grip.rate ? "Velocity" : "Displacement") +
-                  "'; a traction in the same direction contradicts it. Give 0 for that component, or make the "
-                  "displacement 'free' there.");
-        if (std::find(symmetry.begin(), symmetry.end(), side_of(load.id)) != symmetry.end() &&
-            !std::all_of(load.values.begin(), load.values.end(), [](const auto &value) {
-              return is_zero(*value);
-            }))
-          error(
-            "Traction",
-            "the side '" + name_of(side_of(load.id)) +
-              "' is also named in 'Symmetry', which contradicts it: a symmetry plane carries no load of its own.");
-      }
-    for (const VectorCondition &rate : displacement)
-      for (const VectorCondition &grip : displacement)
-        for (unsigned int c = 0; rate.rate && !grip.rate && grip.id == rate.id && c < dim; ++c)
-          if (rate.values[c] && grip.values[c] && !rate.held[c] && !grip.held[c])
-            error("Velocity",
-                  "the side '" + rate.name + "' has a displacement in " + "xyz"[c] +
-                    " by 'Displacement', which contradicts it. Make one of the two 'free' there.");
-    for (const VectorCondition &grip : displacement)
-      if (std::find(symmetry.begin(), symmetry.end(), side_of(grip.id)) != symmetry.end())
-        error(
-          "Displacement",
-          "the side '" + name_of(side_of(grip.id)) +
-            "' is also named in 'Symmetry', which holds its normal displacement and leaves the others free. Name it in one of the two.");
   }
 
 

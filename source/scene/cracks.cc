@@ -150,6 +150,14 @@ namespace PeriDeal
       "3D: `corner ; corner ; corner ...`, the next polygon after `|`. Each must be planar. A penny-shaped crack is `disc: centre, normal, radius`, seven numbers: a regular "
       "polygon of 96 corners with the area of the circle, seen counterclockwise from where the normal points to.");
     declare(
+      "Interfaces",
+      EntryType::list,
+      "",
+      "",
+      "Of a mesh file: lines (in 3D surfaces) between its cells that are cracks, by the names "
+      "or numbers of their physical groups, several separated by `;`. They are cut into the "
+      "mesh as with `Mesh = faces`.");
+    declare(
       "Mesh",
       EntryType::choice,
       "auto",
@@ -256,13 +264,15 @@ namespace PeriDeal
           std::none_of(tips.begin(), tips.end(), [&](const auto &tip) { return tip.crack == i; }))
         error("Segments",
               crack_name(i, cracks[i]) + " has no length, and no end of it grows ('Growth').");
-    if (physics != Physics::elasticity && mesh != CrackMesh::pairs && conduct())
+    if (physics != Physics::elasticity && conduct() &&
+        (mesh == CrackMesh::removed || (mesh == CrackMesh::faces && contact_conductance < 0.)))
       error("Mesh",
             std::string(mesh == CrackMesh::faces ?
-                          "'faces' cuts the body along the crack, which then conducts nothing" :
+                          "'faces' cuts the body along the crack, which then transmits nothing" :
                           "with 'removed' the cells along the crack conduct nothing") +
               "; with '" + (contact_conductance > 0. ? "Contact conductance" : "Transmission") +
-              "' greater than 0 use 'pairs'.");
+              "' greater than 0 use 'pairs'" +
+              (mesh == CrackMesh::faces ? ", or give a 'Contact conductance'." : "."));
     refuse(physics == Physics::elasticity && mesh == CrackMesh::pairs && !cracks.empty(),
            "Mesh",
            "'pairs' is for diffusion; with 'Physics = elasticity' use 'removed' or 'faces'.");

@@ -47,6 +47,7 @@ namespace PeriDeal
       if (scene.cracks.through_tips == ThroughTips::in_part) // that is for elastic bonds
         heat.cracks.set("Bonds through tips", "auto");
       heat.cracks.parse(Physics::heat);
+      heat.cracks.cracks = scene.cracks.cracks; // with those of interfaces
       // Corrections of elastic bonds are none of those that conduct.
       if (!scene.peridynamics.scales_beside_cracks())
         heat.peridynamics.set("Surface correction", "none");

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/lists.h>
+#include <perideal/scene/quoted.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +38,10 @@ namespace PeriDeal
     std::size_t begin = 0;
     for (std::size_t i = 0; i < text.size(); ++i)
       {
-        if (text[i] == '(')
+        if (const std::size_t end = text[i] == '"' ? text.find('"', i + 1) : std::string::npos;
+            end != std::string::npos)
+          i = end;
+        else if (text[i] == '(')
           ++depth;
         else if (text[i] == ')')
           --depth;
@@ -57,9 +61,11 @@ namespace PeriDeal
   std::pair<std::string, std::string> name_and_value(const std::string &text,
                                                      const std::string &where)
   {
-    const std::size_t colon = text.find(':');
-    const std::string name  = trimmed(text.substr(0, colon));
-    const std::string value = colon == std::string::npos ? "" : trimmed(text.substr(colon + 1));
+    const std::string all   = trimmed(text);
+    const std::size_t quote = !all.empty() && all[0] == '"' ? all.find('"', 1) : 0;
+    const std::size_t colon = all.find(':', quote == std::string::npos ? 0 : quote);
+    const std::string name  = unquoted(trimmed(all.substr(0, colon)));
+    const std::string value = colon == std::string::npos ? "" : trimmed(all.substr(colon + 1));
     if (name.empty() || value.empty())
       entry_error(where, "found '" + text + "', needs 'name: value' (several separated by ';').");
     return {name, value};

@@ -4,6 +4,7 @@
 #include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/parts.h>
+#include <perideal/scene/quoted.h>
 
 #include <cctype>
 
@@ -35,7 +36,8 @@ namespace PeriDeal
     /** Where the word `if` stands between a side and a formula; npos without one. */
     std::size_t place_of_if(const std::string &text)
     {
-      for (std::size_t i = 1; i < text.size(); ++i)
+      const std::size_t quote = !text.empty() && text[0] == '"' ? text.find('"', 1) : 0;
+      for (std::size_t i = quote == std::string::npos ? 1 : quote + 1; i < text.size(); ++i)
         if (is_blank(text[i - 1]) && begins_with_word(text.substr(i), "if"))
           return i;
       return std::string::npos;
@@ -61,7 +63,7 @@ namespace PeriDeal
       entry_error(where,
                   "found '" + text + "', needs " + forms +
                     ". Whole sides have a name already and need no part.");
-    result.side = trimmed(text.substr(0, at));
+    result.side = unquoted(trimmed(text.substr(0, at)));
     result.rest = trimmed(text.substr(at + 2));
     if (result.rest.empty())
       entry_error(where, "a formula is missing behind 'if'.");

@@ -315,8 +315,8 @@ namespace PeriDeal
       "",
       "Parts of the body with a material of their own: `name: region`, several separated by `;`. A region is where a formula of x, y, "
       "z is greater than 0, or `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, ...)`, `sphere(x, y, z, r)`, "
-      "`box(x0, y0, z0, x1, y1, z1)`, their rims included, or with a mesh file `mesh(id)`, the cells with that material id (Gmsh: physical surface, "
-      "in 3D volume). Regions must not overlap; outside them the entries of section `Material` "
+      "`box(x0, y0, z0, x1, y1, z1)`, their rims included, or with a mesh file `mesh(name)` or `mesh(id)`, the cells of that physical surface (in 3D "
+      "volume). Regions must not overlap; outside them the entries of section `Material` "
       "hold. The phases of an image (section `Domain`) are phases, too; a region holds before them.");
     for (const MaterialEntry &entry : material_entries())
       declare(

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/lists.h>
-#include <perideal/scene/physical_names.h>
 #include <perideal/scene/scene_notes.h>
 
 #include <algorithm>
@@ -199,6 +198,7 @@ namespace PeriDeal
     general.parse();
     general.dimension = dim;
     domain.parse();
+    const MeshGroups groups = take_groups_of_mesh(*this);
     elasticity.parse(general.physics, dim);
     time.parse();
     take_times();
@@ -216,16 +216,13 @@ namespace PeriDeal
                    domain.image,
                    general.physics == Physics::elasticity ? !elasticity.is_static() : !time.steady);
     initial_and_source.parse(general.physics, dim, elasticity.computes_temperature);
-    boundary_conditions.physical_names.clear();
-    if (!domain.mesh_file.empty())
-      boundary_conditions.physical_names =
-        read_physical_names(domain.mesh_file, domain.files.folder, dim, domain.files.communicator);
     boundary_conditions.holes = domain.image || !domain.has_lattice() ? Holes<dim>() : domain.holes;
     boundary_conditions.parse(domain.has_lattice(),
                               domain.has_voids(),
                               general.physics,
                               elasticity.computes_temperature);
     cracks.parse(general.physics);
+    add_interfaces(*this, groups);
     peridynamics.parse(general.physics);
     coupling.parse(this->deforms && (material.fracture_energy || material.critical_stretch));
     lay_cracks_on_faces(*this);
@@ -308,6 +305,10 @@ namespace PeriDeal
   void Scene<dim>::validate()
   {
     check_tips_in_part(*this);
+    cracks.refuse(cracks.on_faces() && cracks.conduct() && domain.coarsening.times > 0,
+                  "Contact conductance",
+                  "is for meshes without 'Coarsening' (section 'Domain') where 'Mesh' is 'faces'; "
+                  "use 'pairs'.");
     if (domain.has_lattice())
       {
         cracks.set_box(domain.lower, domain.upper);

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/scene/mesh_groups.h>
 #include <perideal/scene/scene.h>
 
 /*
@@ -12,6 +13,21 @@
 
 namespace PeriDeal
 {
+  /**
+   * What a mesh file gives names to: sides and points of section `Boundary conditions`, materials
+   * of regions, which get their numbers in the text of `Regions`. Reads the file, so that it is
+   * refused before anything else is. To be called before those sections are parsed. Collective.
+   */
+  template <int dim>
+  MeshGroups take_groups_of_mesh(Scene<dim> &scene);
+
+  /**
+   * The faces of a mesh file that `Interfaces` names, as cracks: in 2D a line of edges is one, in
+   * 3D what lies in one plane and hangs together. To be called once the others are there.
+   */
+  template <int dim>
+  void add_interfaces(Scene<dim> &scene, const MeshGroups &groups);
+
   /**
    * `Mesh = auto` of solids in 2D with elements: cracks along the axes are cut into the mesh,
    * for which `Cells` may change by some percent, and their ends by half a cell; others are removed

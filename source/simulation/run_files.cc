@@ -7,6 +7,8 @@
 #include <perideal/base/process_end.h>
 #include <perideal/simulation/run_files.h>
 
+#include <sstream>
+
 #include "run_guards.h"
 #include "summary_parts.h"
 
@@ -104,9 +106,29 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Rows of `time,model,quantity,value`, with quotation marks where a quantity has a comma, as
+     * the name of a side may have. */
+    std::string with_quotes(const std::string &rows)
+    {
+      std::istringstream lines(rows);
+      std::string        text;
+      for (std::string line; std::getline(lines, line); text += line + "\n")
+        {
+          const std::size_t from = line.find(',', line.find(',') + 1), to = line.rfind(',');
+          if (from < to && line.find(',', from + 1) < to)
+            line = line.substr(0, from + 1) + '"' + line.substr(from + 1, to - from - 1) + '"' +
+                   line.substr(to);
+        }
+      return text;
+    }
+  } // namespace
+
+
   void RunFiles::add_totals(const std::string &rows)
   {
-    totals.add(rows);
+    totals.add(with_quotes(rows));
     folder.check();
     folder.commit();
     has_results = true;

@@ -6,11 +6,15 @@
     strangers.py contact    a contact conductance between two materials
     strangers.py refusals   what was refused, or never started, and is sound
     strangers.py meshes     files as others write them
+    strangers.py interfaces named lines and surfaces between two materials
+    strangers.py names      what files give names to, and what is not there
 """
+
+import struct
 
 import numpy as np
 
-from scene_test import BC, COUPLED, FE, PD, Comparison, check, check_close, run_parts, run_scene, scene_text, write_file
+from scene_test import BC, COUPLED, FE, PD, Comparison, check, check_close, check_message, run_parts, run_scene, scene_text, write_file
 from scene_texts import mesh_text
 
 
@@ -255,5 +259,187 @@ def meshes():
     check_close(run.model(FE)["boundary flux"]["right"], 1, relative=1e-9, what="a named line between two cells")
 
 
+def two_materials(path, xs, ys, at, moved=0.0, n_named=None):
+    """A mesh of the rectangle xs by ys: cells left of `at` are the group "steel", others "oak: dry", the lowest n_named (or all) lines between them
+    "glue; A:B", two corners on the right one group of points. moved: of inner nodes beside the line, in parts of a cell."""
+    n, m = len(xs), len(ys)
+    number = lambda i, j: 1 + i + n * j
+    nodes = []
+    for j in range(m):
+        for i in range(n):
+            free = 0 < i < n - 1 and 0 < j < m - 1 and xs[i] != at
+            hx, hy = xs[1] - xs[0], ys[1] - ys[0]
+            nodes.append(f"{xs[i] + (moved * hx * np.sin(7 * i + 3 * j) if free else 0)!r} {ys[j] + (moved * hy * np.cos(5 * i + 11 * j) if free else 0)!r}")
+    line = lambda group, a, b: f"1 2 {group} {group} {a} {b}"
+    elements = [line(1, number(0, j), number(0, j + 1)) for j in range(m - 1)] + [line(2, number(n - 1, j), number(n - 1, j + 1)) for j in range(m - 1)]
+    elements += [line(5, number(i, j), number(i, j + 1)) for i in range(n) if xs[i] == at for j in range(n_named or m - 1)]
+    elements += [f"15 2 6 6 {number(0, 0)}", f"15 2 7 7 {number(n - 1, 0)}", f"15 2 7 7 {number(n - 1, m - 1)}"]
+    for j in range(m - 1):
+        for i in range(n - 1):
+            group_of = 8 if xs[i + 1] <= at else 9
+            elements.append(f"3 2 {group_of} {group_of} " + " ".join(str(number(*c)) for c in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))))
+    names = [(1, 1, "left"), (1, 2, "right; hot"), (1, 5, "glue; A:B"), (0, 6, "pin"), (0, 7, "corners"), (2, 8, "steel"), (2, 9, "oak: dry")]
+    text = mesh_text(nodes, elements)
+    named = f"$PhysicalNames\n{len(names)}\n" + "".join(f'{d} {k} "{name}"\n' for d, k, name in names) + "$EndPhysicalNames\n"
+    return write_file(path, text.replace("$Nodes", named + "$Nodes", 1))
+
+
+def bricks(path):
+    """The same in 3D: 8 x 3 x 3 cells, the left half "steel"; the plane between is "glue"."""
+    n, m = 9, 4
+    number = lambda i, j, k: 1 + i + n * (j + m * k)
+    nodes = [f"{i / 8!r} {j / 12!r} {k / 12!r}" for k in range(m) for j in range(m) for i in range(n)]
+    square = lambda i, j, k: " ".join(str(number(i, *c)) for c in ((j, k), (j + 1, k), (j + 1, k + 1), (j, k + 1)))
+    elements = [f"3 2 {side} {side} {square(i, j, k)}" for side, i in ((1, 0), (2, n - 1), (5, 4)) for j in range(3) for k in range(3)]
+    for k in range(3):
+        for j in range(3):
+            for i in range(n - 1):
+                group = 8 if i < 4 else 9
+                corners = [(i + a, j + b, k + c) for c in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+                elements.append(f"5 2 {group} {group} " + " ".join(str(number(*c)) for c in corners))
+    text = mesh_text([], elements).replace("$Nodes\n0\n$EndNodes", f"$Nodes\n{len(nodes)}\n" + "".join(f"{k + 1} {p}\n" for k, p in enumerate(nodes)) + "$EndNodes")
+    named = '$PhysicalNames\n4\n2 1 "left"\n2 2 "right"\n2 5 "glue"\n3 8 "steel"\n$EndPhysicalNames\n'
+    return write_file(path, text.replace("$Nodes", named + "$Nodes", 1))
+
+
+def ring(path, n_radial, n_around):
+    """A quarter of the ring 1 < r < 3 with a circle "glue" at r = 2; sides "inner", "outer", cells "core" within."""
+    radii = [1 + 2 * k / n_radial for k in range(n_radial + 1)]
+    number = lambda i, k: 1 + i + (n_radial + 1) * k
+    angle = lambda k: 0.5 * np.pi * k / n_around
+    nodes = [f"{float(r * np.cos(angle(k)))!r} {float(r * np.sin(angle(k)))!r}" for k in range(n_around + 1) for r in radii]
+    elements = [f"1 2 {side} {side} {number(i, k)} {number(i, k + 1)}" for side, i in ((1, 0), (2, n_radial), (3, n_radial // 2)) for k in range(n_around)]
+    for k in range(n_around):
+        for i in range(n_radial):
+            group = 4 if i < n_radial // 2 else 5
+            elements.append(f"3 2 {group} {group} " + " ".join(str(number(*c)) for c in ((i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1))))
+    named = '$PhysicalNames\n5\n1 1 "inner"\n1 2 "outer"\n1 3 "glue"\n2 4 "core"\n2 5 "shell"\n$EndPhysicalNames\n'
+    return write_file(path, mesh_text(nodes, elements).replace("$Nodes", named + "$Nodes", 1))
+
+
+NAMED = scene_text("""
+Dimension = 2
+Models = finite elements, peridynamics, coupled
+Domain/Shape = mesh file
+Material/Conductivity = 1
+Material/Phases/Regions = metal: mesh(steel)
+Material/Phases/Conductivity = metal: 5
+Boundary conditions/Dirichlet = left: 0 ; "right; hot": 1
+Cracks/Interfaces = "glue; A:B"
+Cracks/Contact conductance = 2
+Time/Steady = true
+Output/Fields = none
+""")
+
+
+def interfaces():
+    """Named lines and surfaces between two materials, as cracks that conduct or do not."""
+    table = Comparison("Interfaces of mesh files")
+    xs, ys = [k / 20 for k in range(21)], [k / 20 for k in range(6)]
+    flow = lambda run, model, side='right; hot': abs(run.model(model)["boundary flux"][side])
+    for name, moved in (("squares", 0), ("distorted cells", 0.25)):
+        on_mesh = {"Domain/Mesh file": two_materials("part.msh", xs, ys, 0.5, moved), "Peridynamics/Horizon": "0.15"}
+        run = run_scene(NAMED, on_mesh)
+        for model in run.summary["models"]:
+            table.add(f"{name}, {model}: 0.5/5 + 1/2 + 0.5/1 in series", flow(run, model) / 0.25, 1 / 1.1, relative=1e-8 if model == FE else 0.01)
+            check_close(abs(sum(run.model(model)["crack flux"])), flow(run, model), relative=0.01, what=f"{name}, {model}: through the crack")
+    two = run_scene(NAMED, on_mesh, ranks=2)
+    for model in run.summary["models"]:
+        check_close(flow(two, model), flow(run, model), relative=1e-9, what=f"{model}: on 2 processes")
+    closed = run_scene(NAMED, {**on_mesh, "Cracks/Contact conductance": "", "Output/Probes": "0.1, 0.1 ; 0.9, 0.1"})
+    for model in closed.summary["models"]:
+        check(flow(closed, model) < 1e-9, f"{model}: nothing passes an insulated interface: {flow(closed, model)}")
+        check_close(closed.probe(model, (0.9, 0.1)), 1, absolute=1e-8, what=f"{model}: behind it")
+    part = run_scene(NAMED, {"Dimension": "3", "Domain/Mesh file": bricks("bricks.msh"), "Peridynamics/Horizon": "0.3", "Cracks/Interfaces": "glue",
+                             BC + "Dirichlet": "left: 0 ; right: 1"})
+    for model in part.summary["models"]:
+        table.add(f"3D, {model}", flow(part, model, "right") * 16, 1 / 1.1, relative=1e-8 if model == FE else 0.01)
+    exact = 0.5 * np.pi / (np.log(2) / 5 + 1 / (2 * 2) + np.log(1.5))
+    run = run_scene(NAMED, {"Domain/Mesh file": ring("ring.msh", 32, 32), "Peridynamics/Horizon": "0.25", "Cracks/Interfaces": "glue",
+                            "Material/Phases/Regions": "metal: mesh(core)", BC + "Dirichlet": "inner: 0 ; outer: 1"})
+    for model in run.summary["models"]:
+        table.add(f"a circle, {model}: logarithms in series", flow(run, model, "outer"), exact, relative=2e-3 if model == FE else 0.02)
+    table.show()
+
+    # Solids: a part of the line, as the same faces given by a segment.
+    part = two_materials("part.msh", xs, ys, 0.5, 0.25, n_named=3)
+    solid = scene_text(SOLID)
+    runs = [run_scene(solid, {"Domain/Mesh file": part, "Cracks/" + entry: text, "Cracks/Mesh": mesh})
+            for entry, text, mesh in (("Interfaces", '"glue; A:B"', "auto"), ("Segments", "0.5,0 ; 0.5,0.15", "faces"))]
+    for model in runs[0].summary["models"]:
+        pull = [run.total("force on right; hot in x", model) for run in runs]
+        check_close(pull[0], pull[1], relative=1e-9, what=f"{model}: force on a notched plate, by interface and by segment")
+        check(abs(pull[0]) < 0.9 * 0.25 * 0.01, f"{model}: the notch is open: {pull[0]}")
+
+
+SOLID = """
+Dimension = 2
+Models = finite elements, peridynamics, coupled
+Physics = elasticity
+Domain/Shape = mesh file
+Material/Young modulus = 1
+Material/Poisson ratio = 0.25
+Peridynamics/Horizon = 0.15
+Boundary conditions/Displacement = left: 0, 0 ; "right; hot": 0.01, 0
+Output/Fields = none
+"""
+
+
+def names():
+    """What files give names to: points, materials, names with separators; binary files; what cannot be used, and what is not there."""
+    xs, ys = [k / 8 for k in range(9)], [k / 16 for k in range(5)]
+    part = two_materials("part.msh", xs, ys, 0.5)
+    heat = {"Models": FE, "Domain/Mesh file": part, "Cracks/Interfaces": "", "Cracks/Contact conductance": ""}
+    series = 0.25 / (0.5 / 5 + 0.5)
+    for regions in ("metal: mesh(steel)", 'metal: mesh("steel")', "metal: mesh(8)"):
+        run = run_scene(NAMED, {**heat, "Material/Phases/Regions": regions})
+        check_close(run.model(FE)["boundary flux"]["right; hot"], series, relative=1e-9, what=regions)
+    run = run_scene(NAMED, {**heat, "Material/Conductivity": "5", "Material/Phases/Regions": 'wood: mesh("oak: dry")', "Material/Phases/Conductivity": "wood: 1"})
+    check_close(run.model(FE)["boundary flux"]["right; hot"], series, relative=1e-9, what="a material with a colon in its name")
+    run = run_scene(NAMED, {**heat, "Domain/Mesh file": write_file("binary.msh", binary(part)), "Material/Phases/Regions": "metal: mesh(steel)"})
+    check_close(run.model(FE)["boundary flux"]["right; hot"], series, relative=1e-9, what="a binary file")
+
+    # A part of a side and a point, and two points that share a load: moments about the left end are forces times 1/2 of the length.
+    for where, given in (("pin", ""), ("corner", "corner: point 0, 0")):
+        run = run_scene(scene_text(SOLID), {"Models": FE, "Domain/Mesh file": part, BC + "Parts": given, "Peridynamics/Horizon": "0.3",
+                                            BC + "Displacement": f"left: 0, free ; {where}: free, 0", BC + "Traction": "corners: 0.02, 0"})
+        check_close(run.total("force on left in x", FE), -0.02, relative=1e-8, what=f"held at {where}: what two points share")
+
+    triangles = SQUARE.replace("1 3 2 5 5 1 2 3 4", "1 2 2 5 5 1 2 3").replace("$Elements\n4", "$Elements\n5").replace("4 1 2 3 3 4 1\n", "4 1 2 3 3 4 1\n5 2 2 5 5 1 3 4\n")
+    second = SQUARE.replace("2 1 2 1 1 1 2\n", "2 8 2 1 1 1 2 3\n")
+    nothing = {"Models": FE, BC + "Dirichlet": "nowhere: 0", "Peridynamics/Horizon": "", "Cracks/Interfaces": "", "Cracks/Contact conductance": "", "Material/Phases/Regions": "a: mesh(b)"}
+    for what, text, words in (("triangles", triangles, ["triangle", "Mesh.SubdivisionAlgorithm = 1"]), ("second order", second, ["higher order", "Mesh.SubdivisionAlgorithm = 1"]),
+                              ("no such side", SQUARE, ["mesh(b)", "physical group"])):
+        run = run_scene(NAMED, {**nothing, "Domain/Mesh file": write_file("wrong.msh", text)}, expect_error=True)
+        check_message(run, *words)
+    for entry, text, words in ((BC + "Dirichlet", "left: 0 ; rihgt: 1", ["rihgt", "left (1)", "right; hot (2)"]), (BC + "Dirichlet", "left: 0 ; 3: 1", ["unknown side '3'", "left (1)"]),
+                               ("Cracks/Interfaces", "glue", ["glue; A:B (5)"]), ("Cracks/Interfaces", "left", ["surface of the body", "glue; A:B (5)"]),
+                               ("Cracks/Mesh", "pairs", ["'Interfaces'", "faces"])):
+        run = run_scene(NAMED, {"Domain/Mesh file": part, "Peridynamics/Horizon": "0.3", entry: text}, expect_error=True)
+        check_message(run, *words)
+
+
+def binary(path):
+    """A file of version 2.2 with names of groups as a binary one of version 4.1."""
+    lines = open(path).read().split("\n")
+    section = lambda name: lines[lines.index("$" + name) + 2:lines.index("$End" + name)]
+    names = "\n".join(lines[lines.index("$PhysicalNames"):lines.index("$EndPhysicalNames") + 1])
+    nodes = [line.split() for line in section("Nodes")]
+    blocks = {}
+    for line in section("Elements"):
+        number, kind, _, group, _, *corners = map(int, line.split())
+        blocks.setdefault(({15: 0, 1: 1, 3: 2}[kind], group, kind), []).append((number, *corners))
+    sizes = [sum(dim == d for dim, _, _ in blocks) for d in range(4)]
+    out = b"$MeshFormat\n4.1 1 8\n" + struct.pack("<i", 1) + b"\n$EndMeshFormat\n" + names.encode() + b"\n$Entities\n" + struct.pack("<4Q", *sizes)
+    for dim, group, _ in sorted(blocks):
+        out += struct.pack("<i", group) + bytes(8 * (3 if dim == 0 else 6)) + struct.pack("<Qi", 1, group) + (struct.pack("<Q", 0) if dim else b"")
+    out += b"\n$EndEntities\n$Nodes\n" + struct.pack("<4Q", 1, len(nodes), 1, len(nodes)) + struct.pack("<3iQ", 2, 8, 0, len(nodes))
+    out += b"".join(struct.pack("<Q", int(node[0])) for node in nodes) + b"".join(struct.pack("<3d", *map(float, node[1:])) for node in nodes)
+    out += b"\n$EndNodes\n$Elements\n" + struct.pack("<4Q", len(blocks), sum(map(len, blocks.values())), 1, 10000)
+    for (dim, group, kind), elements in blocks.items():
+        out += struct.pack("<3iQ", dim, group, kind, len(elements)) + b"".join(struct.pack(f"<{len(e)}Q", *e) for e in elements)
+    return out + b"\n$EndElements\n"
+
+
 if __name__ == "__main__":
-    run_parts(voids, contact, refusals, meshes)
+    run_parts(voids, contact, refusals, meshes, interfaces, names)

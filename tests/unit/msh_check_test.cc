@@ -2,7 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/text_file.h>
-#include <perideal/mesh/msh_check.h>
+#include <perideal/scene/msh_file.h>
 
 #include "scene_test_tools.h"
 
@@ -242,6 +242,19 @@ TEST(MshCheck, what_others_write)
   EXPECT_EQ(mesh.sides[0].id, 5);
   EXPECT_EQ(mesh.sides[1].id, 5);
 
+  EXPECT_EQ((mesh.ids.at({1, "wall"})), 5);
+  EXPECT_EQ((mesh.ids.at({1, "hot"})), 6);
+
+  // Points, also in two groups.
+  const std::string with_points = with(with(latest, "0 1 1 0\n", "1 1 1 0\n9 0 0 0 2 3 4\n"),
+                                       "2 6 1 6\n",
+                                       "3 7 1 7\n0 9 15 1\n7 3\n");
+  mesh                          = parse_msh(with_points, "part.msh", 2);
+  ASSERT_EQ(mesh.places.size(), 2u);
+  EXPECT_EQ(mesh.places[0].id, 3);
+  EXPECT_EQ(mesh.places[1].id, 4);
+  EXPECT_EQ(mesh.places[1].nodes[0], 2u);
+
   // Comments, and a node that is given twice at one place.
   const std::string comment = "$Comments\nsaved 5 1 1 0 $Nodes\n$EndComments\n";
   expect_sound(with(with(old, "$EndNodes\n", "$EndNodes\n" + comment),
@@ -255,6 +268,8 @@ TEST(MshCheck, what_others_write)
   mesh = parse_msh(with(old, "2 1 2 5 3 2 3", "2 1 2 5 3 2 5"), "part.msh", 2);
   check_msh(mesh, "part.msh", 2);
   ASSERT_EQ(mesh.sides.size(), 1u);
+  ASSERT_EQ(mesh.interfaces.size(), 1u);
+  EXPECT_EQ(mesh.interfaces[0].number, 2);
   const MshMesh again = parse_msh(text_of_msh(mesh, 2), "part.msh", 2);
   EXPECT_EQ(again.points, mesh.points);
   ASSERT_EQ(again.cells.size(), 2u);

@@ -257,7 +257,7 @@ namespace PeriDeal
                  s,
                  "Mesh",
                  {"Transmission", "use 'pairs'"});
-    expect_fault(fault(s, "Mesh = faces & Contact conductance = 5"),
+    expect_fault(fault(s, "Mesh = removed & Contact conductance = 5"),
                  s,
                  "Mesh",
                  {"Contact conductance", "use 'pairs'"});

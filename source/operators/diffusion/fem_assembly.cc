@@ -19,6 +19,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact_pairs.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -32,6 +34,20 @@ namespace PeriDeal
       IndexSet        relevant;
       DoFTools::extract_locally_relevant_dofs(dofs, relevant);
       return TrilinosWrappers::SparsityPattern(owned, owned, relevant, dofs.get_communicator());
+    }
+
+
+    void add_to(TrilinosWrappers::SparsityPattern &pattern, const ContactPair &pair)
+    {
+      pattern.add(pair.own, pair.own);
+      pattern.add(pair.own, pair.other);
+    }
+
+
+    void add_to(TrilinosWrappers::SparseMatrix &matrix, const ContactPair &pair)
+    {
+      matrix.add(pair.own, pair.own, pair.conductance);
+      matrix.add(pair.own, pair.other, -pair.conductance);
     }
 
 
@@ -79,6 +95,8 @@ namespace PeriDeal
       DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
     if (zone_bonds)
       zone_bonds->add_pattern(dofs, pattern);
+    for (const ContactPair &pair : contact_pairs(dofs, body.cracks))
+      add_to(pattern, pair);
     pattern.compress();
     stiffness.reinit(pattern);
     if (!capacity_is_diagonal())
@@ -118,6 +136,8 @@ namespace PeriDeal
         }
     if (zone_bonds)
       zone_bonds->add_to(stiffness);
+    for (const ContactPair &pair : contact_pairs(dofs, body.cracks))
+      add_to(stiffness, pair);
     stiffness.compress(VectorOperation::add);
     if (apart())
       zone_bonds->take_remainder(stiffness);
@@ -365,6 +385,9 @@ namespace PeriDeal
     // Finite elements with the same cracks conduct nearly like the bonds.
     TrilinosWrappers::SparsityPattern pattern = empty_pattern(dofs);
     DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
+    const auto contact = contact_pairs(dofs, body.cracks);
+    for (const ContactPair &pair : contact)
+      add_to(pattern, pair);
     pattern.compress();
     matrix.reinit(pattern);
     for (const auto &cell : dofs.active_cell_iterators())
@@ -375,6 +398,8 @@ namespace PeriDeal
           data.stiffness.add(1., data.transfer);
           hanging.add_to(matrix, data.stiffness, data.indices);
         }
+    for (const ContactPair &pair : contact)
+      add_to(matrix, pair);
     matrix.compress(VectorOperation::add);
   }
 

@@ -12,9 +12,23 @@
 
 #include <algorithm>
 
+#include "contact_pairs.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** Each pair comes up at both of its ends. */
+    void add_contact_heat(Balance &balance, const std::vector<ContactPair> &pairs, const Vector &u)
+    {
+      for (const ContactPair &pair : pairs)
+        balance.cracks[pair.crack] +=
+          0.5 * pair.side * pair.conductance * (u(pair.other) - u(pair.own));
+    }
+  } // namespace
+
 
   template <int dim>
   void FEMOperator<dim>::require(const BodyParameters<dim> &body, const bool coupled)
@@ -235,6 +249,9 @@ namespace PeriDeal
         if (zone_bonds)
           zone_bonds->add_heat(u, balance);
         cells.add_heat(u, balance);
+        add_contact_heat(balance,
+                         contact_pairs(dofs, body.cracks),
+                         with_columns_as_ghosts(u, stiffness));
       }
     balance.content = heat_of(u);
   }

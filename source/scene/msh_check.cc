@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/mesh/msh_check.h>
+#include <perideal/scene/msh_file.h>
 
 #include <algorithm>
 #include <cmath>
@@ -319,8 +319,7 @@ namespace PeriDeal
           }
         std::vector<MshElement> outside;
         for (unsigned int s = 0; s < mesh.sides.size(); ++s)
-          if (inside.count(s) == 0)
-            outside.push_back(mesh.sides[s]);
+          (inside.count(s) == 0 ? outside : mesh.interfaces).push_back(mesh.sides[s]);
         mesh.sides.swap(outside);
       }
 

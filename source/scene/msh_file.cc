@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
-#include <perideal/mesh/msh_check.h>
-#include <perideal/scene/physical_names.h>
+#include <perideal/scene/lists.h>
+#include <perideal/scene/msh_file.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <iomanip>
 #include <map>
 #include <set>
@@ -27,7 +30,7 @@ namespace PeriDeal
   namespace
   {
     const std::string supported =
-      " PeriDeal reads Gmsh files (.msh, versions 2.2 and 4.1 as text) of quadrilaterals in 2D and hexahedra in 3D only "
+      " PeriDeal reads Gmsh files (.msh, versions 2.2 and 4.1) of quadrilaterals in 2D and hexahedra in 3D only "
       "(in Gmsh: 'Recombine Surface' and Mesh.SubdivisionAlgorithm = 1 make quadrilaterals, = 2 hexahedra; or use transfinite or extruded volumes).";
 
 
@@ -63,49 +66,30 @@ namespace PeriDeal
     }
 
 
-    /** Of sides: the first number of each name that has several, by the others. */
-    std::map<int, int> ids_of_one_name(const std::string &text, const unsigned int dim)
-    {
-      std::map<int, int>         same;
-      std::map<std::string, int> first;
-      const std::size_t          begin = text.find("$PhysicalNames");
-      if (begin == std::string::npos)
-        return same;
-      const std::size_t end = text.find("$EndPhysicalNames", begin);
-      for (const auto &[name, id] : named_sides(text.substr(begin, end - begin), dim))
-        if (const auto found = first.emplace(name, id); !found.second)
-          same[id] = found.first->second;
-      return same;
-    }
-
-
     class Parser
     {
     public:
       Parser(const std::string &text, const std::string &name, const unsigned int dim)
         : words(text, name)
         , dim(dim)
-        , same(ids_of_one_name(text, dim))
       {}
 
       MshMesh parse()
       {
         read_header();
         std::string section(words.next("'$Nodes'"));
-        const auto  skip = [&](const std::string &title) {
-          if (section != "$" + title)
-            return;
-          words.skip_to("$End" + title);
-          section = words.next("'$Nodes'");
-        };
-        skip("PhysicalNames");
-        if (section == "$Entities")
-          {
+        for (;; section = words.next("'$Nodes'"))
+          if (section == "$PhysicalNames")
+            read_names();
+          else if (section == "$Entities")
             read_entities();
-            section = words.next("'$Nodes'");
-          }
-        partitioned = section == "$PartitionedEntities";
-        skip("PartitionedEntities");
+          else if (section == "$PartitionedEntities")
+            {
+              partitioned = true;
+              words.skip_to("$EndPartitionedEntities");
+            }
+          else
+            break;
         if (section != "$Nodes")
           words.broken("found '" + section.substr(0, 40) + "'", "'$Nodes'");
         read_nodes();
@@ -141,10 +125,30 @@ namespace PeriDeal
         is_latest      = version == "4.1";
         const int kind = words.whole("the kind of the file, 0 (text)", 0, Words::largest);
         if (kind != 0)
-          words.error("the file is binary, or broken: save it as text (in Gmsh: without -bin, "
-                      "Mesh.Binary = 0).");
+          words.error("the kind of the file is " + std::to_string(kind) +
+                      ", neither text (0) nor binary (1): it is broken.");
         words.whole("the size of a number, 8 bytes", 8, 8);
         words.require("$EndMeshFormat");
+      }
+
+
+      /** Groups of a dimension that have one name have the first one's number. */
+      void read_names()
+      {
+        std::istringstream lines(words.text_until("$EndPhysicalNames"));
+        for (std::string line; std::getline(lines, line);)
+          {
+            std::istringstream numbers(line);
+            unsigned int       dimension = 0;
+            int                id        = -1;
+            const std::size_t  from = line.find('"'), to = line.rfind('"');
+            if (!(numbers >> dimension >> id) || id < 0 || from >= to)
+              continue;
+            const std::string name  = trimmed(line.substr(from + 1, to - from - 1));
+            const auto        found = mesh.ids.emplace(std::make_pair(dimension, name), id).first;
+            if (found->second != id)
+              same[{dimension, id}] = found->second;
+          }
       }
 
 
@@ -164,12 +168,19 @@ namespace PeriDeal
               for (unsigned int k = 0; k < (d == 0 && is_latest ? 3 : 6); ++k)
                 words.real("a coordinate of " + what);
               const int n_physical = words.count("the number of physical groups of " + what);
-              if (n_physical > 1)
+              if (n_physical > 1 && (d == dim || d + 1 == dim))
                 words.error(what + " is in " + std::to_string(n_physical) +
                             " physical groups, where one is allowed (or the file is broken).");
               int id = 0;
-              if (n_physical == 1)
-                id = words.whole("the physical group of " + what, 0, Words::largest);
+              for (int k = 0; k < n_physical; ++k)
+                {
+                  const int one =
+                    words.whole("the physical group of " + what, -Words::largest, Words::largest);
+                  if (k == 0)
+                    id = std::abs(one); // of a curve that is turned around
+                  else if (d == 0)
+                    more_groups[tag].push_back(one);
+                }
               if (d > 0)
                 {
                   const int n_around = words.count("the number of entities around " + what);
@@ -278,7 +289,8 @@ namespace PeriDeal
         int n_read = 0;
         for (int block = 0; block < n_blocks; ++block)
           {
-            int n = n_elements, id = 0, type = 0;
+            int  n = n_elements, id = 0, type = 0;
+            auto more = more_groups.end(); // of a point
             if (!is_old)
               {
                 const auto entity = read_entity();
@@ -293,8 +305,9 @@ namespace PeriDeal
                   words.broken("found entity " + std::to_string(entity.second) + " of dimension " +
                                  std::to_string(entity.first),
                                "one that '$Entities' lists");
-                id = found == ids.end() ? 0 : found->second;
-                n  = words.count("the number of elements in this block");
+                id   = found == ids.end() ? 0 : found->second;
+                more = type == 15 ? more_groups.find(entity.second) : more_groups.end();
+                n    = words.count("the number of elements in this block");
                 if (n > n_elements - n_read)
                   words.broken("found " + std::to_string(n) + " elements in this block",
                                "no more than " + std::to_string(n_elements) +
@@ -302,6 +315,12 @@ namespace PeriDeal
               }
             for (int i = 0; i < n; ++i)
               read_element(type, id);
+            if (more != more_groups.end() && dim > 1 && n > 0)
+              for (const int other : more->second)
+                {
+                  mesh.places.push_back(mesh.places.back());
+                  mesh.places.back().id = the_first_of(0, other);
+                }
             n_read += n;
           }
         if (n_read != n_elements)
@@ -324,6 +343,14 @@ namespace PeriDeal
           words.error("found a " + std::string(title) + ", which a mesh of dimension " +
                       std::to_string(dim) + " that can be used does not have." + supported);
         return type;
+      }
+
+
+      /** The group whose name this one has, too. */
+      int the_first_of(const unsigned int dimension, const int id) const
+      {
+        const auto other = same.find({dimension, id});
+        return other == same.end() ? id : other->second;
       }
 
 
@@ -352,8 +379,7 @@ namespace PeriDeal
                 id            = k == 0 ? tag : id;
               }
           }
-        const auto other = same.find(id);
-        element.id = other == same.end() || type_dimension(type) + 1 != dim ? id : other->second;
+        element.id = the_first_of(type_dimension(type), id);
         element.n  = type == 15 ? 1 : type == 1 ? 2 : type == 3 ? 4 : 8;
         for (unsigned int k = 0; k < element.n; ++k)
           {
@@ -370,16 +396,20 @@ namespace PeriDeal
           mesh.cells.push_back(element);
         else if (element.n == 1u << (dim - 1))
           mesh.sides.push_back(element);
+        else if (element.n == 1)
+          mesh.places.push_back(element);
       }
 
 
-      Words                                 words;
-      const unsigned int                    dim;
-      const std::map<int, int>              same; // first of the groups that share a name
-      bool                                  is_old = false, is_latest = false;
-      bool                                  has_entities = false, partitioned = false;
-      int                                   n_points = 0; // as often as they are given
-      std::map<std::pair<int, int>, int>    ids; // physical, of entities (dimension, number)
+      Words                              words;
+      const unsigned int                 dim;
+      bool                               is_old = false, is_latest = false;
+      bool                               has_entities = false, partitioned = false;
+      int                                n_points = 0; // as often as they are given
+      std::map<std::pair<int, int>, int> ids;          // physical, of entities (dimension, number)
+      std::map<int, std::vector<int>>    more_groups;  // of points, beside the first
+      std::map<std::pair<unsigned int, int>, int>
+        same; // first of the groups that share a dimension and a name
       std::unordered_map<int, unsigned int> index_of, elements; // of node numbers; their lines
       MshMesh                               mesh;
     };
@@ -413,6 +443,25 @@ namespace PeriDeal
 
   MshMesh parse_msh(const std::string &text, const std::string &name, const unsigned int dim)
   {
+    if (const std::string converted = text_of_binary_msh(text, name); !converted.empty())
+      return Parser(converted, name + " (binary, as text)", dim).parse();
     return Parser(text, name, dim).parse();
+  }
+
+
+  MshMesh read_msh(const std::string &file_name, const std::string &folder, const unsigned int dim)
+  {
+    std::string     path = file_name, fault;
+    std::error_code error;
+    if (const auto beside = std::filesystem::path(folder) / file_name;
+        !std::filesystem::exists(path, error) && std::filesystem::exists(beside, error))
+      path = beside.string();
+    const std::string text = read_file(path, most_bytes_of_data, fault);
+    AssertThrow(fault.empty(),
+                UserError("'Mesh file' in section 'Domain': '" + file_name + "' " + fault +
+                          places_looked_at(file_name, folder)));
+    MshMesh mesh = parse_msh(text, file_name, dim);
+    check_msh(mesh, file_name, dim);
+    return mesh;
   }
 } // namespace PeriDeal

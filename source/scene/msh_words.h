@@ -87,6 +87,14 @@ namespace PeriDeal
         {}
     }
 
+    /** What stands before the word, with its line ends; behind the word goes on what follows. */
+    std::string text_until(const std::string &end)
+    {
+      const std::size_t begin = position;
+      skip_to(end);
+      return text.substr(begin, position - end.size() - begin);
+    }
+
     void require(const std::string &expected)
     {
       const std::string word(next("'" + expected + "'"));

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/user_error.h>
+#include <perideal/scene/mesh_groups.h>
+#include <perideal/scene/msh_file.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/map.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <set>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Names of the groups of a dimension that these elements are in. */
+    class Names
+    {
+    public:
+      Names(const MshMesh &mesh, const unsigned int dimension)
+      {
+        for (const auto &[key, id] : mesh.ids)
+          if (key.first == dimension)
+            names.emplace(id, key.second);
+      }
+
+      std::string of(const int id) const
+      {
+        const auto found = names.find(id);
+        return found == names.end() ? std::to_string(id) : found->second;
+      }
+
+      std::map<std::string, int> of(const std::vector<MshElement> &elements) const
+      {
+        std::set<int> ids;
+        for (const MshElement &element : elements)
+          ids.insert(element.id);
+        std::map<std::string, int> found;
+        for (const int id : ids)
+          found.emplace(of(id), id);
+        return found;
+      }
+
+    private:
+      std::map<int, std::string> names;
+    };
+
+
+    MeshGroups groups_of(const MshMesh &mesh, const unsigned int dim, const bool faces)
+    {
+      MeshGroups  groups;
+      const Names of_sides(mesh, dim - 1), of_points(mesh, 0);
+      groups.sides      = of_sides.of(mesh.sides);
+      groups.interfaces = of_sides.of(mesh.interfaces);
+      groups.materials  = Names(mesh, dim).of(mesh.cells);
+      for (const MshElement &place : mesh.places)
+        if (place.id > 0)
+          groups.points[of_points.of(place.id)].push_back(mesh.points[place.nodes[0]]);
+      for (const MshElement &face : mesh.interfaces)
+        if (faces)
+          {
+            std::vector<MeshGroups::Place> corners;
+            for (unsigned int k = 0; k < face.n; ++k)
+              corners.push_back(mesh.points[face.nodes[k]]);
+            groups.faces[face.id].push_back(corners);
+          }
+      return groups;
+    }
+  } // namespace
+
+
+  MeshGroups read_mesh_groups(const std::string &file_name,
+                              const std::string &folder,
+                              const unsigned int dim,
+                              const bool         faces,
+                              const MPI_Comm     communicator)
+  {
+    MeshGroups  groups;
+    std::string message;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      try
+        {
+          groups = groups_of(read_msh(file_name, folder, dim), dim, faces);
+        }
+      catch (const UserError &error)
+        {
+          message = error.message();
+        }
+    throw_on_all_if_any(communicator, message);
+    groups.sides      = Utilities::MPI::broadcast(communicator, groups.sides);
+    groups.materials  = Utilities::MPI::broadcast(communicator, groups.materials);
+    groups.points     = Utilities::MPI::broadcast(communicator, groups.points);
+    groups.interfaces = Utilities::MPI::broadcast(communicator, groups.interfaces);
+    groups.faces      = Utilities::MPI::broadcast(communicator, groups.faces);
+    return groups;
+  }
+
+
+  std::string text_of_groups(const std::map<std::string, int> &groups)
+  {
+    std::string text;
+    for (const auto &[name, id] : groups)
+      text += (text.empty() ? "" : ", ") +
+              (name == std::to_string(id) ? name : name + " (" + std::to_string(id) + ")");
+    return text.empty() ? "none" : text;
+  }
+
+
+  int number_of_group(const std::map<std::string, int> &groups, const std::string &name)
+  {
+    if (const auto found = groups.find(name); found != groups.end())
+      return found->second;
+    for (const auto &group : groups)
+      if (std::to_string(group.second) == name)
+        return group.second;
+    return -1;
+  }
+} // namespace PeriDeal
