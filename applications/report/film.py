@@ -25,6 +25,7 @@ class Film:
         self.indices = [i for i in (range(len(self.times)) if indices is None else indices)
                         if run.field_file(i, model) is not None]
         self.field = field or self.usual_field()
+        self.indices = [i for i in self.indices if run.field(i, model, self.field.name, required=False) is not None]
         self.segments = {i: segments_of(run.cracks(i)) for i in self.indices}
         self.shapes = self.deformed_shapes(n_pixels)
         if self.shapes is not None:

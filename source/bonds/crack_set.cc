@@ -24,13 +24,12 @@ namespace PeriDeal
     , cut_at_tips(cut_at_tips)
     , contact_conductance(contact_conductance)
     , voids(voids)
-    , in_part(in_part_at_tips)
     , time(past.representative(0.))
     , cracks(make_crack_geometries(past.pieces(time, cut_at_tips)))
     , transmission(past.transmission(time))
     , broken_bonds(transmission_of_broken)
   {
-    if (in_part)
+    if (in_part_at_tips)
       make_soft_cracks();
   }
 
@@ -84,7 +83,7 @@ namespace PeriDeal
   template <int dim>
   double CrackSet<dim>::kept_part(const unsigned int node, const unsigned int neighbor) const
   {
-    if (!in_part || !neighbors.is_real(neighbor))
+    if (soft_cracks.empty() || !neighbors.is_real(neighbor))
       return cuts(node, neighbor) ? 0. : 1.;
     if (kept_of_broken(node, neighbor) < 1. || leaves_body(node, neighbor))
       return 0.;
@@ -196,33 +195,31 @@ namespace PeriDeal
                                       bool                          &cut,
                                       const bool                     of_way) const
   {
-    double kept = 1.;
-    cut         = false;
-    for (std::size_t k = 0; k < cracks.size();)
+    double kept                           = 1.;
+    cut                                   = false;
+    const std::vector<unsigned int> &near = cracks_near(node);
+    for (auto k = near.begin(); k != near.end();)
       {
         // A bond may meet several pieces of a crack, or a piece and its mirror image where the
         // crack ends on a side: that is one crossing.
         double             fraction = 1.;
-        const unsigned int crack    = cracks[k].crack;
-        for (; k < cracks.size() && cracks[k].crack == crack; ++k)
+        const unsigned int number   = cracks[*k].crack;
+        for (; k != near.end() && cracks[*k].crack == number; ++k)
           {
-            if (!cracks[k].is_near(neighbors.position(node), neighbors.weights().reach()))
-              continue;
-            test_crossings(
-              node,
-              neighbor,
-              cracks[k],
-              [&](const Point<dim> &a, const Point<dim> &b) {
-                cut      = true;
-                fraction = std::min(
-                  fraction,
-                  contact_conductance < 0. ?
-                    transmission :
-                    contact_fraction_of(cracks[k], a, b, [&](const double s) {
-                      const double k = conductivities.in_series(node, neighbor, s);
-                      return std::make_pair(k, of_way ? k : conductivities.of_bond(node, neighbor));
-                    }));
-              });
+            const CrackGeometry<dim> &crack = cracks[*k];
+            test_crossings(node, neighbor, crack, [&](const Point<dim> &a, const Point<dim> &b) {
+              cut = true;
+              fraction =
+                std::min(fraction,
+                         contact_conductance < 0. ?
+                           transmission :
+                           contact_fraction_of(crack, a, b, [&](const double s) {
+                             const double in_series = conductivities.in_series(node, neighbor, s);
+                             return std::make_pair(in_series,
+                                                   of_way ? in_series :
+                                                            conductivities.of_bond(node, neighbor));
+                           }));
+            });
           }
         kept *= fraction;
       }
@@ -242,12 +239,26 @@ namespace PeriDeal
   bool CrackSet<dim>::cuts(const unsigned int node, const unsigned int neighbor) const
   {
     bool cut = false;
-    for (const CrackGeometry<dim> &crack : cracks)
-      if (!cut && crack.is_near(neighbors.position(node), neighbors.weights().reach()))
-        test_crossings(node, neighbor, crack, [&](const Point<dim> &, const Point<dim> &) {
+    for (const unsigned int k : cracks_near(node))
+      if (!cut)
+        test_crossings(node, neighbor, cracks[k], [&](const Point<dim> &, const Point<dim> &) {
           cut = true;
         });
     return cut || kept_of_broken(node, neighbor) < 1. || leaves_body(node, neighbor);
+  }
+
+
+  template <int dim>
+  const std::vector<unsigned int> &CrackSet<dim>::cracks_near(const unsigned int node) const
+  {
+    if (near.node == node)
+      return near.cracks;
+    near.node = node;
+    near.cracks.clear();
+    for (unsigned int k = 0; k < cracks.size(); ++k)
+      if (cracks[k].is_near(neighbors.position(node), neighbors.weights().reach()))
+        near.cracks.push_back(k);
+    return near.cracks;
   }
 
 
@@ -293,9 +304,9 @@ namespace PeriDeal
                                      std::vector<std::pair<unsigned int, int>> &crossed) const
   {
     crossed.clear();
-    for (const CrackGeometry<dim> &crack : cracks)
-      if (crack.is_near(neighbors.position(node), neighbors.weights().reach()) &&
-          (crossed.empty() || crossed.back().first != crack.crack))
+    for (const unsigned int k : cracks_near(node))
+      if (const CrackGeometry<dim> &crack = cracks[k];
+          crossed.empty() || crossed.back().first != crack.crack)
         test_crossings(node, neighbor, crack, [&](const Point<dim> &a, const Point<dim> &) {
           if (crossed.empty() || crossed.back().first != crack.crack)
             crossed.emplace_back(crack.crack, crack.signed_distance(a) > 0. ? 1 : -1);
@@ -309,6 +320,7 @@ namespace PeriDeal
     time         = change.to;
     cracks       = make_crack_geometries(past.pieces(time, cut_at_tips));
     transmission = past.transmission(time);
+    near.node    = numbers::invalid_unsigned_int;
     broken_bonds.add(change.broken);
   }
 

@@ -234,7 +234,8 @@ namespace PeriDeal
                               const Cracks<dim>        &cracks,
                               std::vector<std::string> &notes)
     {
-      if (cracks.on_faces() || cracks.change() || cracks.conduct())
+      if (cracks.on_faces() || cracks.change() ||
+          (cracks.conduct() && cracks.contact_conductance < 0.))
         return;
       for (const CrackGeometry<dim> &crack : make_crack_geometries(cracks.pieces(0.)))
         if (measure_on_faces(coarse, crack) > 0. && lies_on_faces(coarse, crack))

@@ -21,7 +21,8 @@ namespace PeriDeal
   /**
    * How many steps a run takes and how long they take, from its first ones: where steps adapt to a
    * solution that nobody knows yet, and the material has to be found anew in each. The run goes
-   * from 0 towards its end for about a second of processor time.
+   * from 0 towards its end until twice the time forecasts nearly the same, for half a second of
+   * processor time at least and some eight at most.
    * @param advance to the end, calling what it is given after each step but the last
    * @param op of the steps
    * @param stabilized explicit steps whose stages go with the length (rkc2)

@@ -198,7 +198,12 @@ namespace PeriDeal
     const double to = representative(t);
     if (to == from || !changes_ever())
       return std::nullopt;
-    return ChangeSet<dim>{from, to, begin_of_span(t), changes(from, to)};
+    ChangeSet<dim> found;
+    found.from  = from;
+    found.to    = to;
+    found.since = begin_of_span(t);
+    found.cuts  = changes(from, to);
+    return found;
   }
 
 

@@ -21,6 +21,7 @@ namespace PeriDeal
   {
     using Place = MeshGroups::Place;
 
+    constexpr std::size_t most_points = 100; // of a group; their formula has to be short
 
     const std::string &text_of(const SceneSection &section, const std::string &entry)
     {
@@ -32,13 +33,32 @@ namespace PeriDeal
     }
 
 
-    /** Some condition may be on a part of this name. */
-    bool is_named(const SceneSection &conditions, const std::string &name)
+    /** What stands before the colons of an entry, or between them; of mistakes anything. */
+    std::vector<std::string> names_in(const std::string &text)
     {
-      return std::any_of(
-        conditions.entries().begin(),
-        conditions.entries().end(),
-        [&](const Entry &entry) { return entry.text.find(name) != std::string::npos; });
+      std::vector<std::string> names;
+      for (const std::string &piece : split_list(text, ';'))
+        if (const auto parts = split_list(piece, ':'); !parts.empty())
+          for (const std::string &name : split_list(parts.front(), ','))
+            names.push_back(unquoted(name));
+      return names;
+    }
+
+
+    /** Some condition is on a part of this name, which is not one of the scene's own. */
+    bool is_asked_for(const SceneSection &conditions, const std::string &name)
+    {
+      bool asked = false;
+      for (const Entry &entry : conditions.entries())
+        {
+          const std::vector<std::string> names = names_in(entry.text);
+          if (std::find(names.begin(), names.end(), name) == names.end())
+            continue;
+          if (entry.name == "Parts")
+            return false;
+          asked = true;
+        }
+      return asked;
     }
 
 
@@ -265,8 +285,16 @@ namespace PeriDeal
     for (const auto &[name, number] : groups.sides)
       conditions.physical_names[name] = number;
     for (const auto &[name, places] : groups.points)
-      if (groups.sides.count(name) == 0 && is_named(conditions, name))
-        conditions.parts.push_back(part_of<dim>(name, places));
+      if (groups.sides.count(name) == 0 && is_asked_for(conditions, name))
+        {
+          conditions.refuse(places.size() > most_points,
+                            "Parts",
+                            "the physical points '" + name + "' of the mesh file are " +
+                              std::to_string(places.size()) + "; at most " +
+                              std::to_string(most_points) +
+                              " are one part. Name a line or surface, or give a 'region'.");
+          conditions.parts.push_back(part_of<dim>(name, places));
+        }
     number_materials(scene.material.phases, groups.materials);
     return groups;
   }

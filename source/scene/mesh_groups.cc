@@ -12,6 +12,7 @@
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <algorithm>
 #include <set>
 
 namespace PeriDeal
@@ -60,9 +61,16 @@ namespace PeriDeal
       groups.sides      = of_sides.of(mesh.sides);
       groups.interfaces = of_sides.of(mesh.interfaces);
       groups.materials  = Names(mesh, dim).of(mesh.cells);
+      // A number is that of a side; files number the groups of each dimension by themselves.
       for (const MshElement &place : mesh.places)
-        if (place.id > 0)
-          groups.points[of_points.of(place.id)].push_back(mesh.points[place.nodes[0]]);
+        if (const std::string name = of_points.of(place.id);
+            name.find_first_not_of("0123456789") != std::string::npos)
+          {
+            auto                   &places = groups.points[name];
+            const MeshGroups::Place p      = mesh.points[place.nodes[0]];
+            if (std::find(places.begin(), places.end(), p) == places.end())
+              places.push_back(p);
+          }
       for (const MshElement &face : mesh.interfaces)
         if (faces)
           {

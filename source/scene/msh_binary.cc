@@ -41,8 +41,13 @@ namespace PeriDeal
 
       std::string convert()
       {
-        if (line() != "$MeshFormat")
-          return "";
+        std::string first;
+        for (bool in_comments = false; first != "$MeshFormat"; first = line())
+          {
+            if (position == bytes.size() || !(in_comments || first.empty() || first[0] == '$'))
+              return "";
+            in_comments = first == "$Comments" || (in_comments && first != "$EndComments");
+          }
         std::istringstream header(line());
         std::string        version, kind, size;
         header >> version >> kind >> size;
@@ -53,7 +58,8 @@ namespace PeriDeal
           error("it is binary and of version " + version + ", of which binary files are not read." +
                 remedy);
         if (whole() != 1)
-          error("it is binary and has the byte order of another kind of machine." + remedy);
+          error(
+            "it is binary and has the byte order of another kind of machine. Save it as text (in Gmsh: without -bin, Mesh.Binary = 0).");
         text << "$MeshFormat\n" << version << " 0 8\n";
         // What lies between sections is text; comments may hold anything.
         for (std::string title = next_line(); title != "$Elements"; title = next_line())

@@ -281,7 +281,7 @@ namespace PeriDeal
       void check_sides()
       {
         std::vector<Face>      named;
-        std::set<unsigned int> inside;
+        std::set<unsigned int> inside, again; // elements of two groups with one name
         for (unsigned int s = 0; s < mesh.sides.size(); ++s)
           {
             const auto &n = mesh.sides[s].nodes;
@@ -309,8 +309,10 @@ namespace PeriDeal
                           ", expected a piece of a side of the body.");
             if (dim > 1 && last - first == 2)
               inside.insert(named[k].element); // between two materials
-            if (k > 0 && named[k - 1].nodes == named[k].nodes &&
-                mesh.sides[named[k - 1].element].id != side.id)
+            if (k == 0 || named[k - 1].nodes != named[k].nodes)
+              continue;
+            again.insert(named[k].element);
+            if (mesh.sides[named[k - 1].element].id != side.id)
               msh_error(name,
                         side.line,
                         title + " is found to be in the physical groups " +
@@ -319,7 +321,8 @@ namespace PeriDeal
           }
         std::vector<MshElement> outside;
         for (unsigned int s = 0; s < mesh.sides.size(); ++s)
-          (inside.count(s) == 0 ? outside : mesh.interfaces).push_back(mesh.sides[s]);
+          if (again.count(s) == 0)
+            (inside.count(s) == 0 ? outside : mesh.interfaces).push_back(mesh.sides[s]);
         mesh.sides.swap(outside);
       }
 

@@ -144,8 +144,10 @@ namespace PeriDeal
             const std::size_t  from = line.find('"'), to = line.rfind('"');
             if (!(numbers >> dimension >> id) || id < 0 || from >= to)
               continue;
-            const std::string name  = trimmed(line.substr(from + 1, to - from - 1));
-            const auto        found = mesh.ids.emplace(std::make_pair(dimension, name), id).first;
+            const std::string name = trimmed(line.substr(from + 1, to - from - 1));
+            if (name.empty())
+              continue;
+            const auto found = mesh.ids.emplace(std::make_pair(dimension, name), id).first;
             if (found->second != id)
               same[{dimension, id}] = found->second;
           }
@@ -168,18 +170,21 @@ namespace PeriDeal
               for (unsigned int k = 0; k < (d == 0 && is_latest ? 3 : 6); ++k)
                 words.real("a coordinate of " + what);
               const int n_physical = words.count("the number of physical groups of " + what);
-              if (n_physical > 1 && (d == dim || d + 1 == dim))
-                words.error(what + " is in " + std::to_string(n_physical) +
-                            " physical groups, where one is allowed (or the file is broken).");
-              int id = 0;
+              int       id         = 0;
               for (int k = 0; k < n_physical; ++k)
                 {
                   const int one =
                     words.whole("the physical group of " + what, -Words::largest, Words::largest);
+                  // Negative of a curve that is turned around.
+                  const int group = the_first_of(d, std::abs(one));
                   if (k == 0)
-                    id = std::abs(one); // of a curve that is turned around
+                    id = group;
                   else if (d == 0)
-                    more_groups[tag].push_back(one);
+                    more_groups[tag].push_back(group);
+                  else if (group != id && (d == dim || d + 1 == dim))
+                    words.error(what + " is in the physical groups " + group_name(d, id) + " and " +
+                                group_name(d, group) +
+                                ", where one is allowed: make one group of it, or divide it.");
                 }
               if (d > 0)
                 {
@@ -319,7 +324,7 @@ namespace PeriDeal
               for (const int other : more->second)
                 {
                   mesh.places.push_back(mesh.places.back());
-                  mesh.places.back().id = the_first_of(0, other);
+                  mesh.places.back().id = other;
                 }
             n_read += n;
           }
@@ -351,6 +356,16 @@ namespace PeriDeal
       {
         const auto other = same.find({dimension, id});
         return other == same.end() ? id : other->second;
+      }
+
+
+      /** "'steel' (3)" */
+      std::string group_name(const unsigned int dimension, const int id) const
+      {
+        for (const auto &[key, number] : mesh.ids)
+          if (key.first == dimension && number == id)
+            return "'" + key.second + "' (" + std::to_string(id) + ")";
+        return std::to_string(id);
       }
 
 

@@ -25,20 +25,11 @@ namespace PeriDeal
     /** The next word; at the end of the file an error that says what is missing. */
     std::string_view next(const std::string &expected)
     {
-      while (position < text.size() && is_blank(text[position]))
-        {
-          line += text[position] == '\n' ? 1 : 0;
-          ++position;
-        }
-      const std::size_t begin = position;
-      while (position < text.size() && !is_blank(text[position]))
-        ++position;
-      if (begin == position)
-        broken("the file ends", expected);
-      const std::string_view word = std::string_view(text).substr(begin, position - begin);
+      const std::string_view word = any(expected);
       if (word != "$Comments")
         return word;
-      skip_to("$EndComments");
+      while (any("'$EndComments'") != "$EndComments")
+        {}
       return next(expected);
     }
 
@@ -123,6 +114,22 @@ namespace PeriDeal
     static bool is_blank(const char c)
     {
       return std::isspace(static_cast<unsigned char>(c)) != 0;
+    }
+
+    /** As next(), comments like anything else. */
+    std::string_view any(const std::string &expected)
+    {
+      while (position < text.size() && is_blank(text[position]))
+        {
+          line += text[position] == '\n' ? 1 : 0;
+          ++position;
+        }
+      const std::size_t begin = position;
+      while (position < text.size() && !is_blank(text[position]))
+        ++position;
+      if (begin == position)
+        broken("the file ends", expected);
+      return std::string_view(text).substr(begin, position - begin);
     }
 
     static std::string shortened(const std::string &word)

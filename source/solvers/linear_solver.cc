@@ -89,8 +89,7 @@ namespace PeriDeal
       }
     // An outdated preconditioner makes iterations slower, never wrong: making one costs as much as
     // dozens of iterations.
-    const bool worn = outdated &&
-                      n_last_iterations > n_first_iterations + 3 + n_first_iterations / 3;
+    const bool worn = outdated && is_slow;
     if (worn)
       {
         preconditioner = std::make_unique<MultigridPreconditioner>(op, direct_up_to);
@@ -104,9 +103,10 @@ namespace PeriDeal
     if (!worn && ratio > 1. / 3. && ratio < 3. && built_stiffness >= 0.)
       return;
     preconditioner->initialize(a, b);
-    built_capacity     = a;
-    built_stiffness    = b;
-    n_first_iterations = 0;
+    built_capacity  = a;
+    built_stiffness = b;
+    first_rate      = 0.;
+    is_slow         = false;
   }
 
 
@@ -146,9 +146,8 @@ namespace PeriDeal
       {
         if (outdated)
           {
-            n_last_iterations  = std::numeric_limits<unsigned int>::max(); // worn
-            n_first_iterations = 1;
-            x                  = 0.; // what has diverged is no guess
+            is_slow = true;
+            x       = 0.; // what has diverged is no guess
             return control.last_step() + solve(a, b, x, rhs, wanted, more);
           }
         std::ostringstream message;
@@ -159,9 +158,22 @@ namespace PeriDeal
           << " in section 'Solver'. Raise 'Tolerance' or 'Maximum iterations' there, or check for parts of the body that nothing holds, for instance because cracks have cut them off.";
         throw Diverged(message.str(), "solver", failure.last_residual / size, tolerance);
       }
-    n_last_iterations  = control.last_step();
-    n_first_iterations = n_first_iterations == 0 ? n_last_iterations : n_first_iterations;
+    judge(control);
     return control.last_step();
+  }
+
+
+  /** By iterations for a digit: solutions may be as rough as they like. */
+  void LinearSolver::judge(const SolverControl &control)
+  {
+    constexpr double fewest = 0.5, slower = 4. / 3., more = 3.;
+    const double     digits = std::log10(control.initial_value() / control.last_value());
+    const double     steps  = control.last_step();
+    if (!(digits > fewest)) // nothing to do, or not a number
+      return;
+    if (first_rate == 0.)
+      first_rate = steps / digits;
+    is_slow = steps > slower * first_rate * digits + more;
   }
 
 
@@ -170,8 +182,8 @@ namespace PeriDeal
     const Archive::Part part(archive, "linear solver");
     archive.exchange("capacity", built_capacity);
     archive.exchange("stiffness", built_stiffness);
-    archive.exchange("first iterations", n_first_iterations);
-    archive.exchange("last iterations", n_last_iterations);
+    archive.exchange("first rate", first_rate);
+    archive.exchange("slow", is_slow);
     archive.exchange("outdated", outdated);
     remake = archive.loads();
   }

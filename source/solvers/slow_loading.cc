@@ -48,7 +48,7 @@ namespace PeriDeal
 
     /**
      * The equilibrium, with the faces of cracks that touch in it: roughly solved as long as these
-     * change. @p residual is overwritten.
+     * change, the first one in a run, where none does yet, too. @p residual is overwritten.
      */
     template <typename Solve>
     void find_touching(ElasticOperator &op,
@@ -58,27 +58,28 @@ namespace PeriDeal
                        const double     t,
                        const double     size,
                        Vector          &residual,
+                       const bool       is_first,
                        const Solve     &solve_to)
     {
-      constexpr unsigned int most  = 40;  // nodes that go on to touch by turns hardly matter
-      constexpr double       rough = 0.1; // of the residual at which a round starts
-      double                 goal  = size;
+      constexpr unsigned int most    = 40;  // nodes that go on to touch by turns hardly matter
+      constexpr double       rough   = 0.1; // of the residual at which a round starts
+      bool                   changes = is_first && op.may_touch();
       for (unsigned int round = 0;; ++round)
         {
+          double goal = size;
+          if (changes && size > 0. && round + 1 < most)
+            {
+              op.distribute(u, t); // unknowns that follow from others
+              op.residual(residual, u, t);
+              goal = std::max(size, rough * residual.l2_norm() / tolerance);
+            }
           solve_to(goal);
-          op.distribute(u, t); // unknowns that follow from others
-          const bool changes = op.update_contact(u);
+          op.distribute(u, t);
+          changes = op.update_contact(u);
           if ((!changes && goal <= size) || round >= most)
             return;
           if (changes)
             solver.operator_changed();
-          goal = size;
-          // (The preconditioner of a body that breaks is judged by iterations of whole solutions.)
-          if (changes && size > 0. && round + 1 < most && !op.may_release_energy())
-            {
-              op.residual(residual, u, t);
-              goal = std::max(size, rough * residual.l2_norm() / tolerance);
-            }
         }
     }
   } // namespace
@@ -107,14 +108,22 @@ namespace PeriDeal
     tell_equilibrium();
     try
       {
-        bool       is_first = true;
-        const auto solve_to = [&](const double goal) {
+        bool       is_untried = true;
+        const auto solve_to   = [&](const double goal) {
           // What contact has changed by then cannot be undone.
-          const LeavableStep leavable(may_be_left && is_first);
-          is_first = false;
+          const LeavableStep leavable(may_be_left && is_untried);
+          is_untried = false;
           iterations += solver->solve(u, t, goal);
         };
-        find_touching(op, *solver, options.tolerance, u, t, size, unbalanced, solve_to);
+        find_touching(op,
+                      *solver,
+                      options.tolerance,
+                      u,
+                      t,
+                      size,
+                      unbalanced,
+                      !before.any,
+                      solve_to);
       }
     catch (const UserError &failure)
       {

@@ -214,7 +214,7 @@ def effort():
     table = Comparison("Iterations with contact over those without")
     pressed, free = (run_scene(PRESSED, {**QUIET, **more, "Cracks/Segments": "-0.8,-0.4 ; 0.8,0.4"}) for more in ({}, OPEN))
     for model in MODELS:
-        table.add_limit(model, pressed.model(model)["iterations"] / free.model(model)["iterations"], 9)
+        table.add_limit(model, pressed.model(model)["iterations"] / free.model(model)["iterations"], 3)
         table.add(f"{model}: force on the bottom over that on the top", -pressed.total("force on bottom in y", model) / pressed.total("force on top in y", model), 1, absolute=1e-7)
     table.show()
 

@@ -4,6 +4,7 @@
 
     estimates.py runs     # unknowns, bonds and memory within a factor of two
     estimates.py refused  # large lattices, without taking memory or time
+    estimates.py steps    # steps and applications of the operator where the material depends on T
 """
 
 import os
@@ -11,7 +12,7 @@ import re
 import tempfile
 import time
 
-from scene_test import Run, check, check_clean_error, check_message, print_table, run_parts, run_perideal, run_scene
+from scene_test import Run, check, check_clean_error, check_message, print_table, run_parts, run_perideal, run_scene, scene_text, write_file
 
 # Scene, settings that leave it short, and a lattice that is small.
 SCENES = [
@@ -87,5 +88,31 @@ def refused():
     print_table("Refused", ("command", "time", "answer"), rows)
 
 
+def steps():
+    """The steps adapt to a solution that nobody knows yet; forecast from the first ones. Where these sum up to less than some seconds of
+    processor time a forecast is the run itself, so that these bounds hold on slower machines, too."""
+    scene = scene_text("""
+Dimension = 2
+Domain/Cells = 60, 60
+Boundary conditions/Dirichlet = left: 1 ; right: 0
+Time/End time = 0.05
+Output/Fields = none
+""")
+    rows = []
+    for what, settings in (("rkc2, conductivity 1 + T", {"Material/Conductivity": "1 + T", "Time/Stepper": "rkc2"}),
+                           ("euler, conductivity 1 + 9 T^2", {"Material/Conductivity": "1 + 9*T^2", "Time/Stepper": "euler"}),
+                           ("default, conductivity 1 + 9 T^2", {"Material/Conductivity": "1 + 9*T^2"}),
+                           ("bdf2, heat capacity 1 + 5 T", {"Material/Heat capacity": "1 + 5*T", "Time/Stepper": "bdf2"})):
+        options = [word for entry, value in settings.items() for word in ("-s", f"{entry}={value}")]
+        stdout = run_perideal(["check", write_file("scene.prm", scene), *options])[1]
+        found = re.findall(r"estimated: ([\d,]+) steps, ([\d,]+) operator applications", stdout)
+        run = run_scene(scene, settings)
+        check(len(found) == len(run.summary["models"]), f"{what}: {stdout}")
+        for (name, model), numbers in zip(run.summary["models"].items(), found):
+            for entry, number in zip(("steps", "operator applications"), numbers):
+                within(f"{what}: {entry} of {name}", float(number.replace(",", "")), model[entry], 2, rows)
+    print_table("Forecasts of steps", ("what", "estimated", "found", "ratio"), rows)
+
+
 if __name__ == "__main__":
-    run_parts(runs, refused)
+    run_parts(runs, refused, steps)

@@ -135,7 +135,7 @@ def contact():
         run = run_scene(WALL, overrides)
         area = 0.04 if name == "3D" else 0.25
         for model in run.summary["models"]:
-            table.add(f"{name}, {model}", abs(run.model(model)["boundary flux"]["right"]) / area, 1 / 1.1, relative=0.01)
+            table.add(f"{name}, {model}", abs(run.model(model)["boundary flux"]["right"]) / area, 1 / 1.1, relative=1e-6)
     two = run_scene(WALL, {"Models": PD}, ranks=2)
     one = run_scene(WALL, {"Models": PD})
     check_close(two.model(PD)["boundary flux"]["right"], one.model(PD)["boundary flux"]["right"], relative=1e-9, what="on 2 processes")
@@ -261,7 +261,7 @@ def meshes():
 
 def two_materials(path, xs, ys, at, moved=0.0, n_named=None):
     """A mesh of the rectangle xs by ys: cells left of `at` are the group "steel", others "oak: dry", the lowest n_named (or all) lines between them
-    "glue; A:B", two corners on the right one group of points. moved: of inner nodes beside the line, in parts of a cell."""
+    "glue; A:B", two corners on the right one group of points, one of them also number 1 without a name. moved: of inner nodes beside the line, in parts of a cell."""
     n, m = len(xs), len(ys)
     number = lambda i, j: 1 + i + n * j
     nodes = []
@@ -273,7 +273,7 @@ def two_materials(path, xs, ys, at, moved=0.0, n_named=None):
     line = lambda group, a, b: f"1 2 {group} {group} {a} {b}"
     elements = [line(1, number(0, j), number(0, j + 1)) for j in range(m - 1)] + [line(2, number(n - 1, j), number(n - 1, j + 1)) for j in range(m - 1)]
     elements += [line(5, number(i, j), number(i, j + 1)) for i in range(n) if xs[i] == at for j in range(n_named or m - 1)]
-    elements += [f"15 2 6 6 {number(0, 0)}", f"15 2 7 7 {number(n - 1, 0)}", f"15 2 7 7 {number(n - 1, m - 1)}"]
+    elements += [f"15 2 1 1 {number(n - 1, 0)}", f"15 2 6 6 {number(0, 0)}", f"15 2 7 7 {number(n - 1, 0)}", f"15 2 7 7 {number(n - 1, m - 1)}"]
     for j in range(m - 1):
         for i in range(n - 1):
             group_of = 8 if xs[i + 1] <= at else 9
@@ -341,7 +341,7 @@ def interfaces():
         on_mesh = {"Domain/Mesh file": two_materials("part.msh", xs, ys, 0.5, moved), "Peridynamics/Horizon": "0.15"}
         run = run_scene(NAMED, on_mesh)
         for model in run.summary["models"]:
-            table.add(f"{name}, {model}: 0.5/5 + 1/2 + 0.5/1 in series", flow(run, model) / 0.25, 1 / 1.1, relative=1e-8 if model == FE else 0.01)
+            table.add(f"{name}, {model}: 0.5/5 + 1/2 + 0.5/1 in series", flow(run, model) / 0.25, 1 / 1.1, relative=1e-8 if model == FE else 1e-6)
             check_close(abs(sum(run.model(model)["crack flux"])), flow(run, model), relative=0.01, what=f"{name}, {model}: through the crack")
     two = run_scene(NAMED, on_mesh, ranks=2)
     for model in run.summary["models"]:
@@ -353,7 +353,7 @@ def interfaces():
     part = run_scene(NAMED, {"Dimension": "3", "Domain/Mesh file": bricks("bricks.msh"), "Peridynamics/Horizon": "0.3", "Cracks/Interfaces": "glue",
                              BC + "Dirichlet": "left: 0 ; right: 1"})
     for model in part.summary["models"]:
-        table.add(f"3D, {model}", flow(part, model, "right") * 16, 1 / 1.1, relative=1e-8 if model == FE else 0.01)
+        table.add(f"3D, {model}", flow(part, model, "right") * 16, 1 / 1.1, relative=1e-8 if model == FE else 1e-6)
     exact = 0.5 * np.pi / (np.log(2) / 5 + 1 / (2 * 2) + np.log(1.5))
     run = run_scene(NAMED, {"Domain/Mesh file": ring("ring.msh", 32, 32), "Peridynamics/Horizon": "0.25", "Cracks/Interfaces": "glue",
                             "Material/Phases/Regions": "metal: mesh(core)", BC + "Dirichlet": "inner: 0 ; outer: 1"})
@@ -399,11 +399,17 @@ def names():
     run = run_scene(NAMED, {**heat, "Domain/Mesh file": write_file("binary.msh", binary(part)), "Material/Phases/Regions": "metal: mesh(steel)"})
     check_close(run.model(FE)["boundary flux"]["right; hot"], series, relative=1e-9, what="a binary file")
 
-    # A part of a side and a point, and two points that share a load: moments about the left end are forces times 1/2 of the length.
-    for where, given in (("pin", ""), ("corner", "corner: point 0, 0")):
-        run = run_scene(scene_text(SOLID), {"Models": FE, "Domain/Mesh file": part, BC + "Parts": given, "Peridynamics/Horizon": "0.3",
-                                            BC + "Displacement": f"left: 0, free ; {where}: free, 0", BC + "Traction": "corners: 0.02, 0"})
-        check_close(run.total("force on left in x", FE), -0.02, relative=1e-8, what=f"held at {where}: what two points share")
+    # Points as the scene's own parts: two share a load, a part of the scene goes before a point of the file, one without a name is no side.
+    solid = {"Models": FE, "Domain/Mesh file": part, "Peridynamics/Horizon": "0.3", "Output/Probes": "1, 0 ; 1, 0.25 ; 0, 0.25"}
+    runs = [run_scene(scene_text(SOLID), {**solid, BC + "Parts": given, BC + "Displacement": f"1: 0, free ; {where}: free, 0", BC + "Traction": load})
+            for where, given, load in (("pin", "", "corners: 0.02, 0"), ("pin", "pin: point 0, 0", "corners: 0.02, 0"),
+                                       ("corner", "corner: point 0, 0 ; a: point 1, 0 ; b: point 1, 0.25", "a: 0.01, 0 ; b: 0.01, 0"))]
+    for run in runs:
+        check_close(run.total("force on 1 in x", FE), -0.02, relative=1e-8, what="the force of both points")
+        for place in ((1, 0), (1, 0.25), (0, 0.25)):
+            for column in ("ux", "uy"):
+                check_close(run.probe(FE, place, column=column), runs[-1].probe(FE, place, column=column), absolute=1e-12, what=f"points of the file: {column} at {place}")
+    check(runs[-1].probe(FE, (1, 0.25), column="uy") < -1e-4, "it is thinner")
 
     triangles = SQUARE.replace("1 3 2 5 5 1 2 3 4", "1 2 2 5 5 1 2 3").replace("$Elements\n4", "$Elements\n5").replace("4 1 2 3 3 4 1\n", "4 1 2 3 3 4 1\n5 2 2 5 5 1 3 4\n")
     second = SQUARE.replace("2 1 2 1 1 1 2\n", "2 8 2 1 1 1 2 3\n")

@@ -160,7 +160,7 @@ TEST(MshCheck, sections_and_counts)
                2,
                8,
                {"'$EndEntities'", "entity 1 of dimension 2"});
-  expect_fault(with(latest, "1 5 0\n", "2 5 6 0\n"), 2, 6, {"2 physical groups"});
+  expect_fault(with(latest, "1 5 0\n", "2 5 6 0\n"), 2, 6, {"physical groups 5 and 6"});
   expect_fault(with(latest, "1 3 1 2\n", "1 7 1 2\n"), 2, 33, {"entity 7", "'$Entities'"});
   expect_fault(with(latest, "1 3 1 2\n", "2 3 1 2\n"), 2, 33, {"line", "dimension 2"});
 }

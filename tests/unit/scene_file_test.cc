@@ -83,10 +83,14 @@ namespace PeriDeal
             text += line + end;
           return text;
         };
-        const TemporaryFile file(
-          lines({"# A comment", "set Title = a", "subsection Domain", "  set Cells = 3, \\", "  7", "end"}));
-        const auto text = read_scene(file.name, {}, MPI_COMM_WORLD);
-        Scene<2>   scene;
+        const TemporaryFile file(lines({"# A comment",
+                                        "set Title = a",
+                                        "subsection Domain",
+                                        "  set Cells = 3, \\",
+                                        "  7",
+                                        "end"}));
+        const auto          text = read_scene(file.name, {}, MPI_COMM_WORLD);
+        Scene<2>            scene;
         parse_scene<2>(text, scene);
         EXPECT_EQ(scene.general.title, "a");
         EXPECT_EQ(scene.domain.cells[0], 3u);
@@ -235,7 +239,8 @@ namespace PeriDeal
               }
             EXPECT_TRUE(entry.type == EntryType::text || entry.type == EntryType::boolean ||
                         entry.type == EntryType::choice || entry.type == EntryType::choices ||
-                        entry.name == "Symmetry" || entry.name == "Parts" || entry.name == "Regions" ||
+                        entry.name == "Symmetry" || entry.name == "Parts" ||
+                        entry.name == "Regions" || entry.name == "Interfaces" ||
                         entry.name == "Image colors" || !entry.unit.empty())
               << entry.name;
           }
@@ -253,6 +258,7 @@ namespace PeriDeal
     expect_parts(cells, {"Cells  (section 'Domain')", "type:", "default:  20, 20"});
     EXPECT_EQ(cells, same);
     expect_parts(section, {"Length  (section 'Units')", "Force  (section 'Units')"});
-    expect_parts(message_of([] { parameter_manual("Cels"); }), {"'Cels'", "'Cells'?", "Peridynamics"});
+    expect_parts(message_of([] { parameter_manual("Cels"); }),
+                 {"'Cels'", "'Cells'?", "Peridynamics"});
   }
 } // namespace PeriDeal

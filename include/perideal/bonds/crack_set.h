@@ -133,6 +133,16 @@ namespace PeriDeal
     /** What is left of a bond that may have broken. */
     double kept_of_broken(const unsigned int node, const unsigned int neighbor) const;
 
+    /** Those that a bond of the node may cross. */
+    const std::vector<unsigned int> &cracks_near(const unsigned int node) const;
+
+    /** Of the node that was asked for last: bonds come by families. */
+    struct Near
+    {
+      unsigned int              node = dealii::numbers::invalid_unsigned_int;
+      std::vector<unsigned int> cracks;
+    };
+
     dealii::types::global_dof_index global(const unsigned int node) const;
     template <typename Test>
     void test_images(const unsigned int         node,
@@ -144,9 +154,9 @@ namespace PeriDeal
     const bool                      cut_at_tips;
     const double                    contact_conductance;
     const BodyVoids<dim>           *voids;
-    const bool                      in_part;
     double                          time; // the representative one
     std::vector<CrackGeometry<dim>> cracks;
+    mutable Near                    near;
     std::vector<CrackGeometry<dim>> soft_cracks; // if they cut in part at tips
     std::vector<double>             widths;      // of their tips
     double                          transmission;

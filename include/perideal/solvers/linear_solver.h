@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <deal.II/lac/solver_control.h>
+
 #include <perideal/base/archive.h>
 #include <perideal/operators/interface/operator.h>
 #include <perideal/solvers/preconditioner.h>
@@ -59,6 +61,7 @@ namespace PeriDeal
 
   private:
     void prepare(const double capacity_factor, const double stiffness_factor);
+    void judge(const dealii::SolverControl &control);
 
     const Operator                          &op;
     const double                             tolerance;
@@ -66,7 +69,8 @@ namespace PeriDeal
     std::unique_ptr<MultigridPreconditioner> preconditioner;
     double                                   built_capacity = -1., built_stiffness = -1.;
     bool                                     outdated = false, remake = false; // after loading
-    unsigned int                             n_first_iterations = 0, n_last_iterations = 0;
+    double                                   first_rate = 0.; // iterations for a digit, when new
+    bool                                     is_slow    = false;
   };
 
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "change_along.h"
+#include "with_ghosts.h"
 
 namespace PeriDeal
 {
@@ -58,30 +59,6 @@ namespace PeriDeal
           }
       return solved(tangents + sum * outer_product(normal, normal), lean); // that is regular
     }
-
-
-    /** Ghosts of a vector are up to date while this lives. */
-    class WithGhosts
-    {
-    public:
-      explicit WithGhosts(const Vector &vector)
-        : vector(vector)
-        , before(vector.has_ghost_elements())
-      {
-        vector.update_ghost_values();
-      }
-
-      ~WithGhosts()
-      {
-        vector.set_ghost_state(before);
-      }
-
-      WithGhosts(const WithGhosts &) = delete;
-
-    private:
-      const Vector &vector;
-      const bool    before;
-    };
   } // namespace
 
 
@@ -400,6 +377,48 @@ namespace PeriDeal
 
 
   template <int dim>
+  void CrackContact<dim>::keep_for_surrogate()
+  {
+    for (Row &row : rows)
+      row.in_surrogate = row.touches;
+  }
+
+
+  template <int dim>
+  void CrackContact<dim>::add_to_surrogate(const SolidContact::EntryAction &add) const
+  {
+    // Springs along n to the ends, together as stiff where a face moves as a whole. (All ends of a
+    // node in one block would be K itself, and far more entries.)
+    for (unsigned int place = 0; place < rows.size(); ++place)
+      {
+        if (!rows[place].in_surrogate)
+          continue;
+        const unsigned int i      = dim * parted.node(place);
+        const Face         own    = face(place);
+        const auto         height = [&](const End &end, const Tensor<1, dim> &d) {
+          return end.stiffness * share_across(d, own.normal, own.lean) * (d * own.normal);
+        };
+        double sum = 0.;
+        for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
+          sum += height(end, d);
+        });
+        for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
+          const double spring = rows[place].weight * sum * height(end, d);
+          for (unsigned int k = 0; k < dim * dim && spring > 0.; ++k)
+            {
+              const unsigned int a = k / dim, b = k % dim, j = dim * end.neighbor;
+              const double       value = spring * own.normal[a] * own.normal[b];
+              add(i + a, i + b, value);
+              add(i + a, j + b, -value);
+              add(j + a, i + b, -value);
+              add(j + a, j + b, value);
+            }
+        });
+      }
+  }
+
+
+  template <int dim>
   void CrackContact<dim>::add_last_forces(Vector &y, const double multiple) const
   {
     for (unsigned int place = 0; place < rows.size(); ++place)
@@ -438,12 +457,16 @@ namespace PeriDeal
   template <int dim>
   void CrackContact<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
-    Vector nodal(layout);
-    for (unsigned int place = 0; place < rows.size(); ++place)
-      nodal.local_element(parted.node(place)) = rows[place].touches ? 1. : 0.;
-    archive.exchange("touching", nodal, keys);
-    for (unsigned int place = 0; place < rows.size(); ++place)
-      rows[place].touches = rows[place].weight > 0. && nodal.local_element(parted.node(place)) > 0.;
+    Vector     nodal(layout);
+    const auto exchange_flags = [&](const std::string &name, bool Row::*const flag) {
+      for (unsigned int place = 0; place < rows.size(); ++place)
+        nodal.local_element(parted.node(place)) = rows[place].*flag ? 1. : 0.;
+      archive.exchange(name, nodal, keys);
+      for (unsigned int place = 0; place < rows.size(); ++place)
+        rows[place].*flag = rows[place].weight > 0. && nodal.local_element(parted.node(place)) > 0.;
+    };
+    exchange_flags("touching", &Row::touches);
+    exchange_flags("touching in the surrogate", &Row::in_surrogate);
     find_any();
   }
 

@@ -2,8 +2,11 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/interleaved.h>
+#include <perideal/base/matrix_rows.h>
 #include <perideal/base/node_loops.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
@@ -12,6 +15,7 @@
 #include <perideal/operators/solid/solid_operator.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -102,6 +106,50 @@ namespace PeriDeal
     latest.cracks_of = cracks_of;
     surrogate_made();
     assemble_surrogate(matrix);
+    // Rows of contact change as bonds break and cracks grow: a run that goes on could not make the
+    // same ones.
+    if (!this->may_release_energy())
+      add_contact(matrix);
+  }
+
+
+  template <int dim>
+  void SolidOperator<dim>::add_contact(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    if (!latest.contact_is_loaded)
+      contact->keep_for_surrogate();
+    latest.contact_is_loaded = false;
+    std::map<types::global_dof_index, std::map<types::global_dof_index, double>> added;
+    const Vector held = held_unknowns();
+    contact->add_to_surrogate(
+      [&](const unsigned int row, const unsigned int column, const double value) {
+        if (held.local_element(row) == 0. && held.local_element(column) == 0.)
+          added[unknowns->local_to_global(row)][unknowns->local_to_global(column)] += value;
+      });
+    const MPI_Comm all = unknowns->get_mpi_communicator();
+    if (Utilities::MPI::max(added.empty() ? 0 : 1, all) == 0)
+      return;
+    const IndexSet owned = unknowns->locally_owned_range();
+    IndexSet       written(owned);
+    written.add_indices(unknowns->ghost_indices());
+    TrilinosWrappers::SparsityPattern pattern(owned, owned, written, all);
+    for_each_entry(matrix, [&](const unsigned int i, const auto column, const double) {
+      pattern.add(unknowns->local_to_global(i), column);
+    });
+    for (const auto &[row, entries] : added)
+      for (const auto &entry : entries)
+        pattern.add(row, entry.first);
+    pattern.compress();
+    TrilinosWrappers::SparseMatrix sum;
+    sum.reinit(pattern);
+    for_each_entry(matrix, [&](const unsigned int i, const auto column, const double value) {
+      sum.add(unknowns->local_to_global(i), column, value);
+    });
+    for (const auto &[row, entries] : added)
+      for (const auto &[column, value] : entries)
+        sum.add(row, column, value);
+    sum.compress(VectorOperation::add);
+    matrix.copy_from(sum);
   }
 
 
@@ -149,6 +197,7 @@ namespace PeriDeal
     if (archive.loads())
       contact->renew();
     contact->exchange(archive, keys);
+    latest.contact_is_loaded = archive.loads() && latest.is_made;
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
   }
@@ -197,7 +246,8 @@ namespace PeriDeal
   template <int dim>
   void SolidOperator<dim>::set_contact(std::unique_ptr<SolidContact> new_contact)
   {
-    contact = std::move(new_contact);
+    contact           = std::move(new_contact);
+    this->has_contact = true;
     set_contact_strains();
     contact->renew();
   }

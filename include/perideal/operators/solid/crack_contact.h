@@ -61,11 +61,13 @@ namespace PeriDeal
     void   add_forces(Vector &y, const Vector &u, const double multiple) const override;
     void   add_last_forces(Vector &y, const double multiple) const override;
     void   add_tangent(Vector &y, const Vector &x) const override;
+    void   keep_for_surrogate() override;
+    void   add_to_surrogate(const SolidContact::EntryAction &add) const override;
 
     /** The energy of all nodes that touch at u, found or not. */
     double energy(const Vector &u) const override;
 
-    /** Which nodes touch. */
+    /** Which nodes touch, and which did so when the surrogate was made. */
     void        exchange(Archive &archive, const NodeKeys &keys) override;
     std::size_t memory_consumption() const override;
 
@@ -83,7 +85,7 @@ namespace PeriDeal
       std::vector<End>               ends;
       double                         weight   = 0.; // c/sum of k a^2; 0: no contact
       double                         strained = 0.; // what thermal strains have of g
-      bool                           touches  = false;
+      bool                           touches = false, in_surrogate = false;
       mutable dealii::Tensor<1, dim> force; // on the node, at last
     };
 

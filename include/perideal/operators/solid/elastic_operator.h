@@ -194,6 +194,12 @@ namespace PeriDeal
       return false;
     }
 
+    /** Something is there that update_contact() may find. Not collective. */
+    bool may_touch() const
+    {
+      return has_contact;
+    }
+
     /**
      * unbalanced() at the u and t of the last widen_zone() and break_bonds(), behind which nothing
      * else has changed. @p r is the latest that was found of the body before. Collective.
@@ -278,6 +284,7 @@ namespace PeriDeal
     virtual void fill_noise(Vector &vector) const = 0;
 
     double released_by_growth = 0., released_by_joining = 0.;
+    bool   has_contact = false;
 
     /** Keeps what temperature_change() gives. Collective. */
     void keep_temperature_change(const Vector &nodal);

@@ -82,5 +82,18 @@ namespace PeriDeal
     {
       return 0;
     }
+
+    /** Called with local unknowns of a row and a column, and what is added there. */
+    using EntryAction =
+      std::function<void(const unsigned int row, const unsigned int column, const double value)>;
+
+    /** What touches now is what add_to_surrogate() gives, until this is called again. */
+    virtual void keep_for_surrogate() {}
+
+    /**
+     * Entries of springs about as stiff as K, for a preconditioner; some are in rows of other
+     * processes. Not collective.
+     */
+    virtual void add_to_surrogate(const EntryAction & /*add*/) const {}
   };
 } // namespace PeriDeal

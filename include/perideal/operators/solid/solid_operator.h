@@ -213,11 +213,17 @@ namespace PeriDeal
      */
     struct Surrogate
     {
-      bool                                                    is_made   = false;
-      double                                                  cracks_of = 0.;
+      bool   is_made = false, contact_is_loaded = false;
+      double cracks_of = 0.;
       std::shared_ptr<dealii::TrilinosWrappers::SparseMatrix> matrix; // of a loaded body
       Vector                                                  diagonal;
     };
+
+    /**
+     * Adds springs across faces that touch: without them iterations are two to four times as many.
+     * Collective.
+     */
+    void add_contact(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
     /** @param u at which energy is released; null: by a body that is loaded, which has told it. */
     void take(const ChangeSet<dim> &change, const Vector *u);
