@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "least_additions.h"
-
 namespace PeriDeal
 {
   using namespace dealii;
@@ -53,45 +51,15 @@ namespace PeriDeal
   }
 
 
-  /** Images beyond sides of a mesh, by place, and their numbers among those that are used. */
-  template <int dim>
-  struct FictitiousBondSearch<dim>::MeshImages
-  {
-    MeshImages(const std::vector<BoundaryImage<dim>> &list, const double reach)
-      : list(list)
-      , bins(reach)
-      , number_of(list.size(), numbers::invalid_unsigned_int)
-    {
-      for (unsigned int g = 0; g < list.size(); ++g)
-        bins.add(list[g].place, g);
-    }
-
-    const std::vector<BoundaryImage<dim>> &list;
-    PointBins<dim>                         bins;
-    std::vector<unsigned int>              number_of;
-  };
-
-
-  template <int dim>
-  struct FictitiousBondSearch<dim>::MeshBond
-  {
-    Tensor<1, dim> xi;
-    unsigned int   image; // in the list
-    double         w;     // 0 where a crack cuts it
-  };
-
-
   template <int dim>
   FictitiousBondList<dim> FictitiousBondSearch<dim>::on_mesh(
-    const std::vector<BoundaryImage<dim>> &beyond,
-    const std::vector<BoundaryImage<dim>> &everywhere)
+    const std::vector<BoundaryImage<dim>> &beyond)
   {
-    MeshImages       with_nodes(beyond, families.weights().reach());
-    const MeshImages all(everywhere, families.weights().reach());
-    return find_all([&](const unsigned int i) {
-      find_on_mesh(i, with_nodes);
-      complete_on_mesh(i, with_nodes, all);
-    });
+    PointBins<dim> bins(families.weights().reach());
+    for (unsigned int g = 0; g < beyond.size(); ++g)
+      bins.add(beyond[g].place, g);
+    std::vector<unsigned int> number_of(beyond.size(), numbers::invalid_unsigned_int);
+    return find_all([&](const unsigned int i) { find_on_mesh(i, beyond, bins, number_of); });
   }
 
 
@@ -139,20 +107,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<typename FictitiousBondSearch<dim>::MeshBond> FictitiousBondSearch<dim>::bonds_to(
-    const unsigned int i,
-    const MeshImages  &beyond) const
+  void FictitiousBondSearch<dim>::find_on_mesh(const unsigned int                     i,
+                                               const std::vector<BoundaryImage<dim>> &beyond,
+                                               const PointBins<dim>                  &bins,
+                                               std::vector<unsigned int>             &number_of)
   {
     const Nodes<dim> &nodes    = families.nodes();
     const Point<dim> &center   = nodes.position(i);
     const double      farthest = halo_of_images(families.weights().reach());
     std::vector<std::pair<Tensor<1, dim>, unsigned int>> around;
-    beyond.bins.visit_near(center, [&](const unsigned int g) {
-      const Tensor<1, dim> xi = beyond.list[g].place - center;
+    bins.visit_near(center, [&](const unsigned int g) {
+      const Tensor<1, dim> xi = beyond[g].place - center;
       if (xi.norm() > 1e-9 * families.weights().reach() &&
           families.weights().of_length(xi.norm()) > 0. &&
-          std::all_of(beyond.list[g].term_places.begin(),
-                      beyond.list[g].term_places.end(),
+          std::all_of(beyond[g].term_places.begin(),
+                      beyond[g].term_places.end(),
                       [&](const Point<dim> &p) { return center.distance(p) < farthest; }))
         around.emplace_back(xi, g);
     });
@@ -164,10 +133,9 @@ namespace PeriDeal
           return a.first[d] < b.first[d];
       return a.second < b.second;
     });
-    std::vector<MeshBond> bonds;
     for (const auto &[xi, g] : around)
       {
-        const BoundaryImage<dim> &image = beyond.list[g];
+        const BoundaryImage<dim> &image = beyond[g];
         if (families.cracks().leaves_body(i, image.origin))
           continue;
         // As on a lattice.
@@ -176,107 +144,23 @@ namespace PeriDeal
         if (cut && !(image.terms.size() == 1 &&
                      is_separated(families, i, image.terms[0], image.twice_planes)))
           continue;
-        bonds.push_back(
-          {xi,
-           g,
-           cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm())});
-      }
-    return bonds;
-  }
-
-
-  template <int dim>
-  void FictitiousBondSearch<dim>::find_on_mesh(const unsigned int i, MeshImages &beyond)
-  {
-    for (const MeshBond &bond : bonds_to(i, beyond))
-      {
-        const BoundaryImage<dim> &image  = beyond.list[bond.image];
-        unsigned int             &number = beyond.number_of[bond.image];
-        if (number == numbers::invalid_unsigned_int)
+        if (number_of[g] == numbers::invalid_unsigned_int)
           {
             typename FictitiousImages<dim>::Image fields{};
             fields.place  = image.place;
             fields.planes = image.planes;
             fields.volume = image.volume;
             fields.origin = image.origin;
-            number        = images.add(fields, image.terms, &image.twice_planes);
+            number_of[g]  = images.add(fields, image.terms, &image.twice_planes);
           }
-        if (bond.w == 0.)
+        const double w =
+          cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm());
+        if (cut)
           list.cut.push_back(list.images.size());
-        list.images.push_back(number);
-        list.moments.push_back(bond.w * bond.xi);
-        list.squares.push_back(bond.w * bond.xi.norm_square());
+        list.images.push_back(number_of[g]);
+        list.moments.push_back(w * xi);
+        list.squares.push_back(w * xi.norm_square());
       }
-  }
-
-
-  /** The products n_a n_b n_c n_d, a <= b <= c <= d, of n = xi/x. */
-  template <int dim>
-  typename FictitiousBondSearch<dim>::EvenMoments FictitiousBondSearch<dim>::even_moments(
-    const Tensor<1, dim> &xi)
-  {
-    const Tensor<1, dim> n = xi / xi.norm();
-    EvenMoments          all;
-    unsigned int         k = 0;
-    for (unsigned int a = 0; a < dim; ++a)
-      for (unsigned int b = a; b < dim; ++b)
-        for (unsigned int c = b; c < dim; ++c)
-          for (unsigned int d = c; d < dim; ++d)
-            all[k++] = n[a] * n[b] * n[c] * n[d];
-    return all;
-  }
-
-
-  template <int dim>
-  void FictitiousBondSearch<dim>::complete_on_mesh(const unsigned int i,
-                                                   const MeshImages  &beyond,
-                                                   const MeshImages  &everywhere)
-  {
-    constexpr double tiny = 1e-9;
-    if (everywhere.list.empty())
-      return;
-    // What images beyond the other sides would have of sum w x^2 n_a n_b n_c n_d.
-    EvenMoments gap{};
-    double      size    = 0.;
-    const auto  add_all = [&](const MeshImages &some, const double sign) {
-      for (const MeshBond &bond : bonds_to(i, some))
-        if (bond.w > 0.)
-          {
-            const EvenMoments moments = even_moments(bond.xi);
-            const double      square  = bond.w * bond.xi.norm_square();
-            size += square;
-            for (unsigned int k = 0; k < gap.size(); ++k)
-              gap[k] += sign * square * moments[k];
-          }
-    };
-    add_all(everywhere, 1.);
-    if (size == 0.)
-      return;
-    add_all(beyond, -1.);
-    if (std::all_of(gap.begin(), gap.end(), [&](const double g) {
-          return std::abs(g) < tiny * size;
-        }))
-      return;
-    std::vector<typename Families<dim>::Member> members;
-    std::vector<EvenMoments>                    moments;
-    std::vector<double>                         weights;
-    families.members_of(i, members);
-    for (const auto &member : members)
-      {
-        const Tensor<1, dim> xi = families.neighbors().bond_vector(i, member.neighbor);
-        moments.push_back(even_moments(xi));
-        weights.push_back(member.weight * member.kept * xi.norm_square());
-      }
-    const std::vector<double> additions = least_additions(moments, weights, gap);
-    for (unsigned int m = 0; m < members.size(); ++m)
-      if (additions[m] > tiny && weights[m] > 0.)
-        {
-          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, members[m].neighbor);
-          const double         w  = members[m].weight * members[m].kept * additions[m];
-          list.images.push_back(image_of(members[m].neighbor));
-          list.moments.push_back(w * xi);
-          list.squares.push_back(w * xi.norm_square());
-        }
   }
 
 
@@ -389,11 +273,9 @@ namespace PeriDeal
     fields.place   = nodes.position(node);
     fields.volume  = nodes.volume(node);
     fields.origin  = node;
+    fields.site    = nodes.lattice()->index(fields.place);
     fields.is_real = true;
-    if (nodes.lattice())
-      fields.site = nodes.lattice()->index(fields.place);
-    const Point<dim> no_planes;
-    return images.add(fields, {Term{node, 0, 1.}}, nodes.lattice() ? nullptr : &no_planes);
+    return images.add(fields, {Term{node, 0, 1.}});
   }
 
 

@@ -24,12 +24,11 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::vector<BoundaryImage<dim>> &beyond,
-                                        const std::vector<BoundaryImage<dim>> &everywhere)
+                                        const std::vector<BoundaryImage<dim>> &beyond)
     : families(families)
     , fictitious(families.nodes())
   {
-    take(FictitiousBondSearch<dim>(families, fictitious).on_mesh(beyond, everywhere), false);
+    take(FictitiousBondSearch<dim>(families, fictitious).on_mesh(beyond), false);
   }
 
 

@@ -26,18 +26,15 @@ namespace PeriDeal
     {
       if (completes_mesh(body))
         {
-          const auto beyond_sides = [&](const auto &goes_on) {
-            return boundary_images<dim>(families.nodes(),
-                                        body.boundary_conditions.symmetry,
-                                        goes_on,
-                                        families.weights().reach());
+          const auto goes_on = [&](const types::boundary_id side) {
+            return goes_on_beyond(body, side);
           };
           auto beyond = std::make_unique<FictitiousBonds<dim>>(
             families,
-            beyond_sides([&](const types::boundary_id side) { return goes_on_beyond(body, side); }),
-            completes_at_surfaces(body) ?
-              beyond_sides([](const types::boundary_id) { return true; }) :
-              std::vector<BoundaryImage<dim>>());
+            boundary_images(families.nodes(),
+                            body.boundary_conditions.symmetry,
+                            goes_on,
+                            families.weights().reach()));
           beyond->add_weights(weighted);
           return beyond;
         }

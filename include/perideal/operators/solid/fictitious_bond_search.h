@@ -62,13 +62,8 @@ namespace PeriDeal
     FictitiousBondList<dim> on_lattice(const std::array<BeyondSide, 2 * dim> &beyond,
                                        const bool                             completes);
 
-    /**
-     * On a mesh. Collective.
-     * @param everywhere if any, the images beyond all sides: what of these are none of @p beyond is
-     *                   made up for
-     */
-    FictitiousBondList<dim> on_mesh(const std::vector<BoundaryImage<dim>> &beyond,
-                                    const std::vector<BoundaryImage<dim>> &everywhere);
+    /** On a mesh. Collective. */
+    FictitiousBondList<dim> on_mesh(const std::vector<BoundaryImage<dim>> &beyond);
 
   private:
     using Site  = typename FictitiousExtension<dim>::Site;
@@ -91,17 +86,10 @@ namespace PeriDeal
     void                       find_on_lattice(const unsigned int i);
     void                       find_site(const unsigned int i, const unsigned int member);
     const std::vector<double> *completing_factors(const unsigned int i);
-
-    struct MeshImages;
-    struct MeshBond;
-    using EvenMoments = std::array<double, dim *(dim + 1) * (dim + 2) * (dim + 3) / 24>;
-
-    std::vector<MeshBond> bonds_to(const unsigned int i, const MeshImages &beyond) const;
-    void                  find_on_mesh(const unsigned int i, MeshImages &beyond);
-    void                  complete_on_mesh(const unsigned int i,
-                                           const MeshImages  &beyond,
-                                           const MeshImages  &everywhere);
-    static EvenMoments    even_moments(const dealii::Tensor<1, dim> &xi);
+    void                       find_on_mesh(const unsigned int                     i,
+                                            const std::vector<BoundaryImage<dim>> &beyond,
+                                            const PointBins<dim>                  &bins,
+                                            std::vector<unsigned int>             &number_of);
 
     unsigned int image_of(const unsigned int node); // that is the node itself
     unsigned int image_at(const Index &index, const double volume);
