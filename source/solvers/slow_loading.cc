@@ -67,7 +67,8 @@ namespace PeriDeal
       for (unsigned int round = 0;; ++round)
         {
           double goal = size;
-          if (changes && size > 0. && round + 1 < most)
+          // (Energies of bodies that break are balanced to the tolerance of whole solutions.)
+          if (changes && size > 0. && round + 1 < most && !op.may_release_energy())
             {
               op.distribute(u, t); // unknowns that follow from others
               op.residual(residual, u, t);
