@@ -130,6 +130,16 @@ namespace PeriDeal
     }
 
 
+    template <int dim>
+    bool is_near(const CrackGeometry<dim>      &crack,
+                 const std::vector<Point<dim>> &p,
+                 const CellData<dim>           &cell)
+    {
+      const auto [center, size] = ball_around(p, cell);
+      return crack.is_near(center, 1.01 * size);
+    }
+
+
     /** How much of a crack a cell holds, its faces included. */
     template <int dim>
     double measure_in_cell(const std::vector<Point<dim>> &p,
@@ -164,9 +174,7 @@ namespace PeriDeal
     {
       std::map<FaceKey<dim>, std::vector<unsigned int>> cells;
       for (unsigned int c = 0; c < mesh.cells.size(); ++c)
-        if (const auto ball = crack ? ball_around(mesh.vertices, mesh.cells[c]) :
-                                      std::pair<Point<dim>, double>();
-            !crack || crack->is_near(ball.first, 1.01 * ball.second))
+        if (crack == nullptr || is_near(*crack, mesh.vertices, mesh.cells[c]))
           for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell; ++f)
             {
               FaceKey<dim> key = face_vertices<dim>(mesh.cells[c], f);

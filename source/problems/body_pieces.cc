@@ -411,12 +411,8 @@ namespace PeriDeal
     const Overlap deep = n_pieces < 2 ? Overlap() : deepest(Displacement(run));
     if (deep.depth == 0.)
       return "";
-    const std::vector<Entry> &entries = run.scene.elasticity.entries();
-    const bool is_off = std::any_of(entries.begin(), entries.end(), [](const Entry &entry) {
-      return entry.name == "Contact" && entry.text == "false";
-    });
     AssertThrow(
-      is_off,
+      run.scene.elasticity.text("Contact") == "false",
       UserError(
         start + text(deep, t) +
         "in motion they do, by 'Models = peridynamics' with 'Solver = dynamics' and 'Kinematics = full' in section 'Elasticity'. Use that, load them so that they do not meet (with 'Kinematics = linear' all results go with the load, so that a small one will do), join them by cells, "

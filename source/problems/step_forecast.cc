@@ -111,6 +111,8 @@ namespace PeriDeal
     try
       {
         advance([&](const double t) {
+          if (t <= (tried.empty() ? 0. : tried.back().t)) // a step that was rejected
+            return;
           tried.push_back({t, n_of(), passed()});
           const double spent = tried.back().spent;
           if (spent < next || (tried.size() < least && spent < 10. * enough))
@@ -119,9 +121,9 @@ namespace PeriDeal
           forecast                = steps_to(end, tried, op.spectrum().sharp, stabilized);
           const double ratio = last.applications > 0. ? forecast.applications / last.applications :
                                                         0.;
-          if ((ratio < settled && ratio > 1. / settled) || spent > most)
+          if ((ratio < settled && ratio > 1. / settled) || spent >= most)
             throw Enough();
-          next = 2. * spent;
+          next = std::min(2. * spent, most);
         });
         forecast = {static_cast<double>(tried.size() + 1), n_of(), passed()};
       }

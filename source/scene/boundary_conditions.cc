@@ -33,19 +33,18 @@ namespace PeriDeal
     }
 
 
-    /** @param listed names as they are to be shown */
-    std::string unknown_side(const std::string              &name,
-                             std::vector<std::string>        known,
-                             const std::vector<std::string> &listed,
-                             const std::vector<Part>        &parts,
-                             const bool                      box_sides)
+    std::string unknown_side(const std::string         &name,
+                             std::vector<std::string>   known,
+                             const MeshGroups::Numbers &of_mesh,
+                             const std::vector<Part>   &parts)
     {
       std::string text = "unknown side '" + name + "'; the sides ";
       if (known.empty())
         text += "of this mesh are its boundary ids (numbers), it has no names.";
+      else if (of_mesh.empty())
+        text += "are: " + join_names(known) + ".";
       else
-        text += std::string(box_sides ? "are: " : "of this mesh, with their boundary ids, are: ") +
-                join_names(listed) + ".";
+        text += "of this mesh, with their boundary ids, are: " + text_of_groups(of_mesh) + ".";
       if (parts.empty())
         return text + did_you_mean(name, known);
       std::vector<std::string> of_parts;
@@ -53,27 +52,6 @@ namespace PeriDeal
         of_parts.push_back(part.name);
       known.insert(known.end(), of_parts.begin(), of_parts.end());
       return text + " Parts: " + join_names(of_parts) + "." + did_you_mean(name, known);
-    }
-
-
-    using Numbers = std::map<std::string, dealii::types::boundary_id>;
-
-    /** A side without a group has the number 0. */
-    bool is_id(const Numbers &numbers, const std::string &name)
-    {
-      return name == "0" || std::any_of(numbers.begin(), numbers.end(), [&](const auto &side) {
-               return std::to_string(side.second) == name;
-             });
-    }
-
-
-    std::vector<std::string> with_numbers(std::vector<std::string> names, const Numbers &numbers)
-    {
-      for (std::string &name : names)
-        if (const auto side = numbers.find(name);
-            side != numbers.end() && std::to_string(side->second) != name)
-          name += " (" + std::to_string(side->second) + ")";
-      return names;
     }
   } // namespace
 
@@ -211,10 +189,10 @@ namespace PeriDeal
       if (or_part && part.name == name)
         return part.id;
     dealii::types::boundary_id id = 0;
-    if (const auto physical = physical_names.find(name); physical != physical_names.end())
-      id = physical->second;
-    else if (const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
-             !box_sides && is_number && (physical_names.empty() || is_id(physical_names, name)))
+    if (const auto of_mesh = number_of_group(physical_names, name))
+      id = *of_mesh;
+    else if (!box_sides && name.find_first_not_of("0123456789") == std::string::npos &&
+             (physical_names.empty() || name == "0")) // a side without a group has the number 0
       id = parse_whole_number(name, where(entry), first_part_id - 1);
     else
       {
@@ -222,11 +200,7 @@ namespace PeriDeal
         const auto                     found = std::find(names.begin(), names.end(), name);
         if (found == names.end() || !box_sides)
           error(entry,
-                unknown_side(name,
-                             names,
-                             with_numbers(names, physical_names),
-                             or_part ? parts : std::vector<Part>(),
-                             box_sides));
+                unknown_side(name, names, physical_names, or_part ? parts : std::vector<Part>()));
         id = name == "hole" ? hole_boundary_id : static_cast<unsigned int>(found - names.begin());
       }
     used_names.try_emplace(id, name);

@@ -23,16 +23,6 @@ namespace PeriDeal
 
     constexpr std::size_t most_points = 100; // of a group; their formula has to be short
 
-    const std::string &text_of(const SceneSection &section, const std::string &entry)
-    {
-      const auto found = std::find_if(section.entries().begin(),
-                                      section.entries().end(),
-                                      [&](const Entry &e) { return e.name == entry; });
-      Assert(found != section.entries().end(), ExcInternalError());
-      return found->text;
-    }
-
-
     /** What stands before the colons of an entry, or between them; of mistakes anything. */
     std::vector<std::string> names_in(const std::string &text)
     {
@@ -92,9 +82,9 @@ namespace PeriDeal
 
 
     /** `mesh(steel)` with the number of the group in place of its name. */
-    std::string with_number(const std::string                &region,
-                            const std::map<std::string, int> &materials,
-                            const std::string                &where)
+    std::string with_number(const std::string         &region,
+                            const MeshGroups::Numbers &materials,
+                            const std::string         &where)
     {
       const std::size_t open = region.find('('), close = region.rfind(')');
       if (trimmed(region.substr(0, open)) != "mesh" || close == std::string::npos || close < open)
@@ -103,8 +93,8 @@ namespace PeriDeal
       if (name.empty() || (materials.count(name) == 0 &&
                            name.find_first_not_of("0123456789.+-eE ") == std::string::npos))
         return region;
-      const int number = number_of_group(materials, name);
-      if (number < 0)
+      const auto number = number_of_group(materials, name);
+      if (!number)
         {
           std::vector<std::string> known;
           for (const auto &group : materials)
@@ -114,15 +104,15 @@ namespace PeriDeal
                         "' is no physical group of cells in the mesh file; they are: " +
                         text_of_groups(materials) + "." + did_you_mean(name, known));
         }
-      return "mesh(" + std::to_string(number) + ")";
+      return "mesh(" + std::to_string(*number) + ")";
     }
 
 
-    void number_materials(Phases &phases, const std::map<std::string, int> &materials)
+    void number_materials(Phases &phases, const MeshGroups::Numbers &materials)
     {
       std::string numbered;
       bool        any = false;
-      for (const std::string &piece : split_list(text_of(phases, "Regions"), ';'))
+      for (const std::string &piece : split_list(phases.text("Regions"), ';'))
         {
           const auto [name, region] = name_and_value(piece, phases.where("Regions"));
           const std::string value =
@@ -277,13 +267,12 @@ namespace PeriDeal
     conditions.parts.clear();
     if (domain.mesh_file.empty())
       return groups;
-    groups = read_mesh_groups(domain.mesh_file,
+    groups                    = read_mesh_groups(domain.mesh_file,
                               domain.files.folder,
                               dim,
-                              !text_of(scene.cracks, "Interfaces").empty(),
+                              !scene.cracks.text("Interfaces").empty(),
                               domain.files.communicator);
-    for (const auto &[name, number] : groups.sides)
-      conditions.physical_names[name] = number;
+    conditions.physical_names = groups.sides;
     for (const auto &[name, places] : groups.points)
       if (groups.sides.count(name) == 0 && is_asked_for(conditions, name))
         {
@@ -305,7 +294,7 @@ namespace PeriDeal
   {
     Cracks<dim>                   &cracks = scene.cracks;
     const std::string              entry  = "Interfaces";
-    const std::vector<std::string> names  = split_list(text_of(cracks, entry), ';');
+    const std::vector<std::string> names  = split_list(cracks.text(entry), ';');
     if (names.empty())
       return;
     cracks.refuse(scene.domain.mesh_file.empty(),
@@ -316,7 +305,7 @@ namespace PeriDeal
                   entry,
                   "are cut into the mesh before the run; with cracks that grow ('Growth', 'Paths') "
                   "give 'Segments' or 'Polygons' instead.");
-    const std::string mesh = text_of(cracks, "Mesh");
+    const std::string mesh = cracks.text("Mesh");
     cracks.refuse(mesh != "auto" && mesh != "faces",
                   "Mesh",
                   "found '" + mesh +
@@ -325,13 +314,13 @@ namespace PeriDeal
                   "Transmission",
                   "is the part that cut bonds keep; of 'Interfaces', which are cut into the mesh, "
                   "give the 'Contact conductance' instead.");
-    std::vector<int> numbers;
+    std::vector<unsigned int> numbers;
     for (const std::string &name : names)
       {
-        const int number = number_of_group(groups.interfaces, unquoted(name));
-        if (number < 0)
+        const auto number = number_of_group(groups.interfaces, unquoted(name));
+        if (!number)
           {
-            const bool is_side = number_of_group(groups.sides, unquoted(name)) >= 0;
+            const bool is_side = number_of_group(groups.sides, unquoted(name)).has_value();
             cracks.refuse(true,
                           entry,
                           (is_side ? "'" + name +
@@ -341,11 +330,11 @@ namespace PeriDeal
                             "; those between two cells are: " + text_of_groups(groups.interfaces) +
                             ".");
           }
-        cracks.refuse(std::find(numbers.begin(), numbers.end(), number) != numbers.end(),
+        cracks.refuse(std::find(numbers.begin(), numbers.end(), *number) != numbers.end(),
                       entry,
                       "'" + name + "' is named twice.");
-        numbers.push_back(number);
-        const auto &faces = groups.faces.at(number);
+        numbers.push_back(*number);
+        const auto &faces = groups.faces.at(*number);
         for (const auto &face : faces)
           if (dim == 3 && !lies_in_plane(face, face[3]))
             cracks.refuse(true,

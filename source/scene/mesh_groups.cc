@@ -38,12 +38,12 @@ namespace PeriDeal
         return found == names.end() ? std::to_string(id) : found->second;
       }
 
-      std::map<std::string, int> of(const std::vector<MshElement> &elements) const
+      MeshGroups::Numbers of(const std::vector<MshElement> &elements) const
       {
         std::set<int> ids;
         for (const MshElement &element : elements)
           ids.insert(element.id);
-        std::map<std::string, int> found;
+        MeshGroups::Numbers found;
         for (const int id : ids)
           found.emplace(of(id), id);
         return found;
@@ -111,7 +111,7 @@ namespace PeriDeal
   }
 
 
-  std::string text_of_groups(const std::map<std::string, int> &groups)
+  std::string text_of_groups(const MeshGroups::Numbers &groups)
   {
     std::string text;
     for (const auto &[name, id] : groups)
@@ -121,13 +121,14 @@ namespace PeriDeal
   }
 
 
-  int number_of_group(const std::map<std::string, int> &groups, const std::string &name)
+  std::optional<unsigned int> number_of_group(const MeshGroups::Numbers &groups,
+                                              const std::string         &name)
   {
     if (const auto found = groups.find(name); found != groups.end())
       return found->second;
     for (const auto &group : groups)
       if (std::to_string(group.second) == name)
         return group.second;
-    return -1;
+    return std::nullopt;
   }
 } // namespace PeriDeal

@@ -185,7 +185,7 @@ namespace PeriDeal
     archive.exchange("first rate", first_rate);
     archive.exchange("slow", is_slow);
     archive.exchange("outdated", outdated);
-    remake = archive.loads();
+    remake = remake || archive.loads();
   }
 
 

@@ -63,7 +63,7 @@ namespace PeriDeal
     {
       constexpr unsigned int most    = 40;  // nodes that go on to touch by turns hardly matter
       constexpr double       rough   = 0.1; // of the residual at which a round starts
-      bool                   changes = is_first && op.may_touch();
+      bool                   changes = is_first && op.may_touch(), has_changed = false;
       for (unsigned int round = 0;; ++round)
         {
           double goal = size;
@@ -74,9 +74,10 @@ namespace PeriDeal
               op.residual(residual, u, t);
               goal = std::max(size, rough * residual.l2_norm() / tolerance);
             }
-          solve_to(goal);
+          solve_to(goal, !has_changed);
           op.distribute(u, t);
-          changes = op.update_contact(u);
+          changes     = op.update_contact(u);
+          has_changed = has_changed || changes;
           if ((!changes && goal <= size) || round >= most)
             return;
           if (changes)
@@ -109,11 +110,9 @@ namespace PeriDeal
     tell_equilibrium();
     try
       {
-        bool       is_untried = true;
-        const auto solve_to   = [&](const double goal) {
-          // What contact has changed by then cannot be undone.
-          const LeavableStep leavable(may_be_left && is_untried);
-          is_untried = false;
+        // What contact has changed by then cannot be undone.
+        const auto solve_to = [&](const double goal, const bool is_as_before) {
+          const LeavableStep leavable(may_be_left && is_as_before);
           iterations += solver->solve(u, t, goal);
         };
         find_touching(op,

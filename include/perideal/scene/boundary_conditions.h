@@ -7,6 +7,7 @@
 
 #include <perideal/scene/expression.h>
 #include <perideal/scene/holes.h>
+#include <perideal/scene/mesh_groups.h>
 #include <perideal/scene/parts.h>
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
@@ -67,7 +68,7 @@ namespace PeriDeal
     /** Of a lattice: whose rims the stairs of its cells stand for. */
     Holes<dim> holes;
     /** Names of a mesh file for its boundary ids. To be set before parse(). */
-    std::map<std::string, dealii::types::boundary_id> physical_names;
+    MeshGroups::Numbers physical_names;
 
     /**
      * For programs: a value, or what enters by the kind with this entry (`Flux`, `Convection`, ...)

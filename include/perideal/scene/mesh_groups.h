@@ -7,6 +7,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,13 @@ namespace PeriDeal
    */
   struct MeshGroups
   {
-    using Place = std::array<double, 3>;
+    using Place   = std::array<double, 3>;
+    using Numbers = std::map<std::string, unsigned int>;
 
-    std::map<std::string, int>                     sides, interfaces, materials;
-    std::map<std::string, std::vector<Place>>      points;
-    std::map<int, std::vector<std::vector<Place>>> faces; // of interfaces: the corners of each
+    Numbers                                   sides, interfaces, materials;
+    std::map<std::string, std::vector<Place>> points;
+    std::map<unsigned int, std::vector<std::vector<Place>>>
+      faces; // of interfaces: the corners of each
   };
 
   /**
@@ -40,8 +43,9 @@ namespace PeriDeal
                               const MPI_Comm     communicator);
 
   /** "left (1), right (2), 7": names with their numbers; "none". */
-  std::string text_of_groups(const std::map<std::string, int> &groups);
+  std::string text_of_groups(const MeshGroups::Numbers &groups);
 
-  /** The number of a group given by its name or number, -1 if there is none. */
-  int number_of_group(const std::map<std::string, int> &groups, const std::string &name);
+  /** The number of a group given by its name or number, if there is one. */
+  std::optional<unsigned int> number_of_group(const MeshGroups::Numbers &groups,
+                                              const std::string         &name);
 } // namespace PeriDeal

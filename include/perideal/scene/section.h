@@ -72,6 +72,8 @@ namespace PeriDeal
 
     const std::vector<Entry> &entries() const;
 
+    const std::string &text(const std::string &entry) const;
+
     /**
      * Give an entry its text, as a scene file would; call parse() of the section (or of the scene)
      * afterwards.
@@ -92,8 +94,6 @@ namespace PeriDeal
                  const std::string              &unit,
                  const std::string              &documentation,
                  const std::vector<std::string> &choices = {});
-
-    const std::string &text(const std::string &entry) const;
 
     /** Whether the text of an entry differs from its default. */
     bool is_given(const std::string &entry) const;

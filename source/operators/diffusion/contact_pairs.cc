@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include "contact_pairs.h"
-
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -11,6 +9,7 @@
 #include <deal.II/numerics/rtree.h>
 
 #include <perideal/mesh/mesh_builder.h>
+#include <perideal/operators/diffusion/contact_pairs.h>
 #include <perideal/scene/crack_geometry.h>
 
 namespace PeriDeal
@@ -76,7 +75,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<ContactPair> contact_pairs(const DoFHandler<dim> &dofs, const Cracks<dim> &cracks)
+  std::vector<ContactPair> contact_pairs([[maybe_unused]] const DoFHandler<dim> &dofs,
+                                         [[maybe_unused]] const Cracks<dim>     &cracks)
   {
     std::vector<ContactPair> pairs;
     if constexpr (dim > 1)
@@ -118,11 +118,6 @@ namespace PeriDeal
                   pairs.push_back(pair);
                 }
           }
-      }
-    else
-      {
-        (void)dofs;
-        (void)cracks;
       }
     return pairs;
   }

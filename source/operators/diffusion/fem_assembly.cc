@@ -19,8 +19,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact_pairs.h"
-
 namespace PeriDeal
 {
   using namespace dealii;
@@ -95,7 +93,7 @@ namespace PeriDeal
       DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
     if (zone_bonds)
       zone_bonds->add_pattern(dofs, pattern);
-    for (const ContactPair &pair : contact_pairs(dofs, body.cracks))
+    for (const ContactPair &pair : contact)
       add_to(pattern, pair);
     pattern.compress();
     stiffness.reinit(pattern);
@@ -136,7 +134,7 @@ namespace PeriDeal
         }
     if (zone_bonds)
       zone_bonds->add_to(stiffness);
-    for (const ContactPair &pair : contact_pairs(dofs, body.cracks))
+    for (const ContactPair &pair : contact)
       add_to(stiffness, pair);
     stiffness.compress(VectorOperation::add);
     if (apart())
@@ -385,7 +383,6 @@ namespace PeriDeal
     // Finite elements with the same cracks conduct nearly like the bonds.
     TrilinosWrappers::SparsityPattern pattern = empty_pattern(dofs);
     DoFTools::make_sparsity_pattern(dofs, pattern, hanging.constraints(), false);
-    const auto contact = contact_pairs(dofs, body.cracks);
     for (const ContactPair &pair : contact)
       add_to(pattern, pair);
     pattern.compress();

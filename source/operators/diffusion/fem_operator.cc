@@ -12,8 +12,6 @@
 
 #include <algorithm>
 
-#include "contact_pairs.h"
-
 namespace PeriDeal
 {
   using namespace dealii;
@@ -58,6 +56,7 @@ namespace PeriDeal
                    std::make_unique<BondsBesideElements<dim>>(std::move(coupling), crack_factors) :
                    nullptr)
     , hanging(dofs, *layout)
+    , contact(contact_pairs(dofs, body.cracks))
     , loads(dofs, layout, body.boundary_conditions, body.initial_and_source.source, hanging)
     , cell_material(dofs, body.material, body.initial_and_source.initial_value, body.steady)
     , prescribed(dofs, *layout, body.boundary_conditions, hanging, loads.part_unknowns())
@@ -249,9 +248,7 @@ namespace PeriDeal
         if (zone_bonds)
           zone_bonds->add_heat(u, balance);
         cells.add_heat(u, balance);
-        add_contact_heat(balance,
-                         contact_pairs(dofs, body.cracks),
-                         with_columns_as_ghosts(u, stiffness));
+        add_contact_heat(balance, contact, with_columns_as_ghosts(u, stiffness));
       }
     balance.content = heat_of(u);
   }

@@ -197,7 +197,8 @@ namespace PeriDeal
     if (archive.loads())
       contact->renew();
     contact->exchange(archive, keys);
-    latest.contact_is_loaded = archive.loads() && latest.is_made;
+    if (archive.loads())
+      latest.contact_is_loaded = latest.is_made;
     conditions->exchange(archive, keys);
     ElasticOperator::exchange(archive, keys);
   }

@@ -6,6 +6,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <perideal/operators/diffusion/cell_matrices.h>
+#include <perideal/operators/diffusion/contact_pairs.h>
 #include <perideal/operators/diffusion/diffusion_operator_base.h>
 #include <perideal/operators/diffusion/heat_loads.h>
 #include <perideal/operators/diffusion/prescribed_values.h>
@@ -194,6 +195,7 @@ namespace PeriDeal
     CrackSideFactors                                crack_factors;
     const std::unique_ptr<BondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     const HangingNodes<dim>                         hanging;
+    const std::vector<ContactPair>                  contact; // of cracks in the mesh
     const HeatLoads<dim>                            loads;
     CellMaterial<dim>                               cell_material;
     const PrescribedValues<dim>                     prescribed;

@@ -219,10 +219,7 @@ namespace PeriDeal
       Vector                                                  diagonal;
     };
 
-    /**
-     * Adds springs across faces that touch: without them iterations are two to four times as many.
-     * Collective.
-     */
+    /** Adds springs across faces that touch, which are as stiff as the body. Collective. */
     void add_contact(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
     /** @param u at which energy is released; null: by a body that is loaded, which has told it. */
