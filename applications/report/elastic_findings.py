@@ -21,7 +21,7 @@ def what_ran(run, words):
     kind = {1: "a bar", 2: "a body" if plane == "strain" else "a plate", 3: "a body"}[
         run.dimension]
     state = f" in plane {plane}" if plane else ""
-    n = len(run.cracks())
+    n = run.n_cracks()
     cracks = "" if not n else " with a crack" if n == 1 else f" with {n} cracks"
     end = run.end_time
     slow = ", slowly loaded" if loading.is_slow(run) else ""

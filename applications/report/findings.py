@@ -77,10 +77,8 @@ def what_ran(run, words):
         end = run.end_time
         how = f"The {words.solution.text}" + (
             "" if end is None else f" up to {words.at_time(end)}")
-    cracks = run.cracks()
-    body = "" if not cracks else \
-        (", in a body with a crack," if len(cracks) == 1
-         else f", in a body with {len(cracks)} cracks,")
+    n = run.n_cracks()
+    body = "" if not n else ", in a body with a crack," if n == 1 else f", in a body with {n} cracks,"
     return f"{how} in {dimension}{body} was computed by {joined}."
 
 

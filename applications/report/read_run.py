@@ -224,6 +224,11 @@ class Run:
             cracks = self.summary["fields"][index].get("cracks", cracks)
         return [np.array(c, float) for c in cracks if len(c) >= 2]
 
+    def n_cracks(self):
+        """Segments that go on where the one before ends are one crack."""
+        cracks = self.cracks()
+        return len(cracks) - sum(len(a) == len(b) == 2 and bool((a[1] == b[0]).all()) for a, b in zip(cracks, cracks[1:]))
+
     def cracks_text(self, index):
         """What tells the cracks of one written time from those of another."""
         return json.dumps(self.summary["fields"][index].get("cracks"))
