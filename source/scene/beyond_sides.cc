@@ -197,7 +197,8 @@ namespace PeriDeal
   template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body)
   {
-    return takes_steps(body) && body.domain.has_lattice() && !body.domain.has_extra_layers() &&
+    return takes_steps(body) && (body.domain.has_lattice() || completes_mesh(body)) &&
+           !body.domain.has_extra_layers() &&
            body.peridynamics.surface_correction == SurfaceCorrection::automatic &&
            hindrance_of_fictitious_nodes(body).empty();
   }
@@ -245,8 +246,9 @@ namespace PeriDeal
     if (const std::string reason = hindrance_of_fictitious_nodes(body); !reason.empty())
       return "none, because " + reason;
     if (completes_mesh(body))
-      return takes_steps(body) ? "fictitious nodes beyond sides with conditions" :
-                                 "fictitious nodes beyond the whole boundary";
+      return takes_steps(body) ?
+               "fictitious nodes beyond sides with conditions, weights of bonds elsewhere" :
+               "fictitious nodes beyond the whole boundary";
     const auto               beyond = beyond_sides(body);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)

@@ -332,6 +332,18 @@ TEST(BoundaryImages, half_a_body_breaks_as_the_whole_one)
 
 namespace
 {
+  /** A square or cube from which a part is cut out; each plane of its boundary is a side. */
+  template <int dim>
+  void make_l_shape(Triangulation<dim> &mesh)
+  {
+    dealii::GridGenerator::hyper_L(mesh, -1., 1.); // its colors are not there in 3D
+    for (const auto &face : mesh.active_face_iterators())
+      for (unsigned int d = 0; d < dim && face->at_boundary(); ++d)
+        if (std::abs(face->vertex(0)[d] - face->center()[d]) < 1e-9)
+          face->set_boundary_id(3 * d + static_cast<unsigned int>(1.1 + face->center()[d]));
+  }
+
+
   /**
    * In the corner into a square or cube from which a part is cut out, the images of the node there
    * fill what the body lacks, alone and beside a side that the edge of the corner meets.
@@ -340,7 +352,7 @@ namespace
   void check_reentrant_corner()
   {
     Triangulation<dim> mesh;
-    dealii::GridGenerator::hyper_L(mesh, -1., 1., true);
+    make_l_shape(mesh);
     mesh.refine_global(dim == 2 ? 4 : 3);
     const MeshFile<dim> file("reentrant", mesh);
     const Body<dim>     body(file.settings(dim == 2 ? 0.3 : 0.4),
@@ -442,7 +454,7 @@ TEST(BoundaryImages, fill_reentrant_corners_in_planes_of_symmetry)
 TEST(BoundaryImages, fill_their_share_of_reentrant_corners_beside_sides_that_end)
 {
   Triangulation<2> mesh;
-  dealii::GridGenerator::hyper_L(mesh, -1., 1., true);
+  make_l_shape(mesh);
   mesh.refine_global(4);
   dealii::types::boundary_id ending = dealii::numbers::invalid_boundary_id;
   for (const auto &face : mesh.active_face_iterators())

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
-
 #include <perideal/operators/solid/family_completion.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "least_additions.h"
 
 namespace PeriDeal
 {
@@ -61,11 +61,9 @@ namespace PeriDeal
   template <int dim>
   std::vector<double> FamilyCompletion<dim>::find_factors(const std::vector<double> &volumes) const
   {
-    const auto            &members = weights.members();
-    std::vector<double>    factors(members.size(), 0.), weight(members.size(), 0.);
-    dealii::Vector<double> gap(n_moments);
-    for (unsigned int n = 0; n < n_moments; ++n)
-      gap[n] = complete[n];
+    const auto         &members = weights.members();
+    std::vector<double> factors(members.size(), 0.), weight(members.size(), 0.);
+    Moments             gap = complete;
     for (unsigned int m = 0; m < members.size(); ++m)
       if (volumes[m] > 0.)
         {
@@ -77,47 +75,14 @@ namespace PeriDeal
             gap[n] -= weight[m] * moments[m][n];
         }
     const double size = *std::max_element(complete.begin(), complete.end());
-    if (gap.linfty_norm() < 1e-9 * size)
+    if (std::all_of(gap.begin(), gap.end(), [&](const double g) {
+          return std::abs(g) < 1e-9 * size;
+        }))
       return factors;
-    // Of all additions the smallest: weight times the positive part of multipliers . moments. Which
-    // are positive is found by turns with the multipliers (Newton's method).
-    const auto product = [&](const unsigned int m, const dealii::Vector<double> &multipliers) {
-      double sum = 0.;
-      for (unsigned int n = 0; n < n_moments; ++n)
-        sum += moments[m][n] * multipliers[n];
-      return sum;
-    };
-    dealii::Vector<double> multipliers(n_moments);
-    std::vector<bool>      grows(members.size(), true);
-    for (unsigned int round = 0; round < 50; ++round)
-      {
-        FullMatrix<double> matrix(n_moments);
-        for (unsigned int m = 0; m < members.size(); ++m)
-          if (grows[m])
-            for (unsigned int n = 0; n < n_moments; ++n)
-              for (unsigned int k = 0; k < n_moments; ++k)
-                matrix(n, k) += weight[m] * moments[m][n] * moments[m][k];
-        // Directions in which there are no bonds have no moments to be completed.
-        const double least = 1e-9 * matrix.linfty_norm();
-        if (!(least > 0.))
-          break;
-        for (unsigned int n = 0; n < n_moments; ++n)
-          matrix(n, n) += least;
-        matrix.gauss_jordan();
-        matrix.vmult(multipliers, gap);
-        bool changes = false;
-        for (unsigned int m = 0; m < members.size(); ++m)
-          {
-            const bool positive = product(m, multipliers) > 0.;
-            changes             = changes || positive != grows[m];
-            grows[m]            = positive;
-          }
-        if (!changes)
-          break;
-      }
+    const std::vector<double> additions = least_additions(moments, weight, gap);
     for (unsigned int m = 0; m < members.size(); ++m)
       if (volumes[m] > 0.)
-        factors[m] += (1. + factors[m]) * std::max(0., product(m, multipliers));
+        factors[m] += (1. + factors[m]) * additions[m];
     return factors;
   }
 

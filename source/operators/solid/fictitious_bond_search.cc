@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "least_additions.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -51,15 +53,48 @@ namespace PeriDeal
   }
 
 
+  /** Images beyond sides of a mesh, by place, and their numbers among those that are used. */
+  template <int dim>
+  struct FictitiousBondSearch<dim>::MeshImages
+  {
+    MeshImages(const std::vector<BoundaryImage<dim>> &list, const double reach)
+      : list(list)
+      , bins(reach)
+      , number_of(list.size(), numbers::invalid_unsigned_int)
+    {
+      for (unsigned int g = 0; g < list.size(); ++g)
+        bins.add(list[g].place, g);
+    }
+
+    const std::vector<BoundaryImage<dim>> &list;
+    PointBins<dim>                         bins;
+    std::vector<unsigned int>              number_of;
+  };
+
+
+  template <int dim>
+  struct FictitiousBondSearch<dim>::MeshBond
+  {
+    Tensor<1, dim> xi;
+    unsigned int   image; // in the list
+    double         w;     // 0 where a crack cuts it
+  };
+
+
   template <int dim>
   FictitiousBondList<dim> FictitiousBondSearch<dim>::on_mesh(
-    const std::vector<BoundaryImage<dim>> &beyond)
+    const std::vector<BoundaryImage<dim>> &beyond,
+    const std::vector<BoundaryImage<dim>> &everywhere)
   {
-    PointBins<dim> bins(families.weights().reach());
-    for (unsigned int g = 0; g < beyond.size(); ++g)
-      bins.add(beyond[g].place, g);
-    std::vector<unsigned int> number_of(beyond.size(), numbers::invalid_unsigned_int);
-    return find_all([&](const unsigned int i) { find_on_mesh(i, beyond, bins, number_of); });
+    MeshImages       with_nodes(beyond, families.weights().reach());
+    const MeshImages all(everywhere, families.weights().reach());
+    return find_all([&](const unsigned int i) {
+      const std::vector<MeshBond> bonds = bonds_to(i, with_nodes);
+      for (const MeshBond &bond : bonds)
+        add(image_on_mesh(bond.image, with_nodes), bond);
+      if (!everywhere.empty())
+        complete_on_mesh(i, bonds, with_nodes, bonds_to(i, all));
+    });
   }
 
 
@@ -107,21 +142,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FictitiousBondSearch<dim>::find_on_mesh(const unsigned int                     i,
-                                               const std::vector<BoundaryImage<dim>> &beyond,
-                                               const PointBins<dim>                  &bins,
-                                               std::vector<unsigned int>             &number_of)
+  std::vector<typename FictitiousBondSearch<dim>::MeshBond> FictitiousBondSearch<dim>::bonds_to(
+    const unsigned int i,
+    const MeshImages  &beyond) const
   {
     const Nodes<dim> &nodes    = families.nodes();
     const Point<dim> &center   = nodes.position(i);
     const double      farthest = halo_of_images(families.weights().reach());
     std::vector<std::pair<Tensor<1, dim>, unsigned int>> around;
-    bins.visit_near(center, [&](const unsigned int g) {
-      const Tensor<1, dim> xi = beyond[g].place - center;
+    beyond.bins.visit_near(center, [&](const unsigned int g) {
+      const Tensor<1, dim> xi = beyond.list[g].place - center;
       if (xi.norm() > 1e-9 * families.weights().reach() &&
           families.weights().of_length(xi.norm()) > 0. &&
-          std::all_of(beyond[g].term_places.begin(),
-                      beyond[g].term_places.end(),
+          std::all_of(beyond.list[g].term_places.begin(),
+                      beyond.list[g].term_places.end(),
                       [&](const Point<dim> &p) { return center.distance(p) < farthest; }))
         around.emplace_back(xi, g);
     });
@@ -133,9 +167,10 @@ namespace PeriDeal
           return a.first[d] < b.first[d];
       return a.second < b.second;
     });
+    std::vector<MeshBond> bonds;
     for (const auto &[xi, g] : around)
       {
-        const BoundaryImage<dim> &image = beyond[g];
+        const BoundaryImage<dim> &image = beyond.list[g];
         if (families.cracks().leaves_body(i, image.origin))
           continue;
         // As on a lattice.
@@ -144,23 +179,135 @@ namespace PeriDeal
         if (cut && !(image.terms.size() == 1 &&
                      is_separated(families, i, image.terms[0], image.twice_planes)))
           continue;
-        if (number_of[g] == numbers::invalid_unsigned_int)
-          {
-            typename FictitiousImages<dim>::Image fields{};
-            fields.place  = image.place;
-            fields.planes = image.planes;
-            fields.volume = image.volume;
-            fields.origin = image.origin;
-            number_of[g]  = images.add(fields, image.terms, &image.twice_planes);
-          }
-        const double w =
-          cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm());
-        if (cut)
-          list.cut.push_back(list.images.size());
-        list.images.push_back(number_of[g]);
-        list.moments.push_back(w * xi);
-        list.squares.push_back(w * xi.norm_square());
+        bonds.push_back(
+          {xi,
+           g,
+           cut ? 0. : nodes.volume(i) * image.volume * families.weights().of_length(xi.norm())});
       }
+    return bonds;
+  }
+
+
+  template <int dim>
+  unsigned int FictitiousBondSearch<dim>::image_on_mesh(const unsigned int g, MeshImages &beyond)
+  {
+    unsigned int &number = beyond.number_of[g];
+    if (number == numbers::invalid_unsigned_int)
+      {
+        const BoundaryImage<dim>             &image = beyond.list[g];
+        typename FictitiousImages<dim>::Image fields{};
+        fields.place  = image.place;
+        fields.planes = image.planes;
+        fields.volume = image.volume;
+        fields.origin = image.origin;
+        number        = images.add(fields, image.terms, &image.twice_planes);
+      }
+    return number;
+  }
+
+
+  template <int dim>
+  void FictitiousBondSearch<dim>::add(const unsigned int image, const MeshBond &bond)
+  {
+    if (bond.w == 0.)
+      list.cut.push_back(list.images.size());
+    list.images.push_back(image);
+    list.moments.push_back(bond.w * bond.xi);
+    list.squares.push_back(bond.w * bond.xi.norm_square());
+  }
+
+
+  /** The products n_a n_b n_c n_d, a <= b <= c <= d, of n = xi/x. */
+  template <int dim>
+  typename FictitiousBondSearch<dim>::EvenMoments FictitiousBondSearch<dim>::even_moments(
+    const Tensor<1, dim> &xi)
+  {
+    const Tensor<1, dim> n = xi / xi.norm();
+    EvenMoments          all;
+    unsigned int         k = 0;
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a; b < dim; ++b)
+        for (unsigned int c = b; c < dim; ++c)
+          for (unsigned int d = c; d < dim; ++d)
+            all[k++] = n[a] * n[b] * n[c] * n[d];
+    return all;
+  }
+
+
+  template <int dim>
+  void FictitiousBondSearch<dim>::complete_on_mesh(const unsigned int           i,
+                                                   const std::vector<MeshBond> &bonds,
+                                                   MeshImages                  &beyond,
+                                                   const std::vector<MeshBond> &everywhere)
+  {
+    // What images beyond the other sides would have of sum w x^2 n_a n_b n_c n_d.
+    EvenMoments gap{};
+    double      size       = 0.;
+    const auto  add_to_gap = [&](const std::vector<MeshBond> &some, const double sign) {
+      for (const MeshBond &bond : some)
+        if (bond.w > 0.)
+          {
+            const EvenMoments moments = even_moments(bond.xi);
+            const double      square  = bond.w * bond.xi.norm_square();
+            size += square;
+            for (unsigned int k = 0; k < gap.size(); ++k)
+              gap[k] += sign * square * moments[k];
+          }
+    };
+    add_to_gap(everywhere, 1.);
+    add_to_gap(bonds, -1.);
+    if (std::all_of(gap.begin(), gap.end(), [&](const double g) {
+          return std::abs(g) <= 1e-9 * size;
+        }))
+      return;
+    // The bonds that there are: in the body, and to images, which in a body that is mirrored stand
+    // for bonds of the whole.
+    std::vector<typename Families<dim>::Member> members;
+    std::vector<MeshBond>                       own;
+    std::vector<EvenMoments>                    moments;
+    std::vector<double>                         squares;
+    families.members_of(i, members);
+    for (const auto &member : members)
+      own.push_back({families.neighbors().bond_vector(i, member.neighbor),
+                     member.neighbor,
+                     member.weight * member.kept});
+    own.insert(own.end(), bonds.begin(), bonds.end());
+    for (const MeshBond &bond : own)
+      {
+        moments.push_back(even_moments(bond.xi));
+        squares.push_back(bond.w * bond.xi.norm_square());
+      }
+    const std::vector<double> additions = least_additions(moments, squares, gap);
+    for (unsigned int k = 0; k < own.size(); ++k)
+      if (additions[k] > 1e-9 && own[k].w > 0.)
+        add(k < members.size() ? image_of(own[k].image) : beside_on_mesh(own[k].image, beyond),
+            {own[k].xi, own[k].image, own[k].w * additions[k]});
+  }
+
+
+  template <int dim>
+  unsigned int FictitiousBondSearch<dim>::beside_on_mesh(const unsigned int g, MeshImages &beyond)
+  {
+    const unsigned int image = image_on_mesh(g, beyond);
+    if (!images.is_mirrored_alone(image))
+      return image; // does not break by itself
+    return beside_of(image, beyond.list[g].terms, &beyond.list[g].twice_planes);
+  }
+
+
+  template <int dim>
+  unsigned int FictitiousBondSearch<dim>::beside_of(const unsigned int       image,
+                                                    const std::vector<Term> &terms,
+                                                    const Point<dim>        *twice_planes)
+  {
+    const auto [entry, is_new] = beside.try_emplace(image, images.size());
+    if (is_new)
+      {
+        auto fields    = images[image];
+        fields.is_real = true;
+        images.add(fields, terms, twice_planes);
+      }
+    return entry->second;
   }
 
 
@@ -250,14 +397,7 @@ namespace PeriDeal
     add(image, member, alone ? 1. : 1. + more, cut);
     if (!alone || more <= 0. || cut)
       return;
-    const auto [entry, is_new] = beside.try_emplace(image, images.size());
-    if (is_new)
-      {
-        auto fields    = images[image];
-        fields.is_real = true;
-        images.add(fields, site.terms);
-      }
-    add(entry->second, member, more, false);
+    add(beside_of(image, site.terms, nullptr), member, more, false);
   }
 
 
@@ -273,9 +413,11 @@ namespace PeriDeal
     fields.place   = nodes.position(node);
     fields.volume  = nodes.volume(node);
     fields.origin  = node;
-    fields.site    = nodes.lattice()->index(fields.place);
     fields.is_real = true;
-    return images.add(fields, {Term{node, 0, 1.}});
+    if (nodes.lattice())
+      fields.site = nodes.lattice()->index(fields.place);
+    const Point<dim> no_planes;
+    return images.add(fields, {Term{node, 0, 1.}}, nodes.lattice() ? nullptr : &no_planes);
   }
 
 

@@ -24,11 +24,12 @@ namespace PeriDeal
 
   template <int dim>
   FictitiousBonds<dim>::FictitiousBonds(const Families<dim>                   &families,
-                                        const std::vector<BoundaryImage<dim>> &beyond)
+                                        const std::vector<BoundaryImage<dim>> &beyond,
+                                        const std::vector<BoundaryImage<dim>> &everywhere)
     : families(families)
     , fictitious(families.nodes())
   {
-    take(FictitiousBondSearch<dim>(families, fictitious).on_mesh(beyond), false);
+    take(FictitiousBondSearch<dim>(families, fictitious).on_mesh(beyond, everywhere), false);
   }
 
 

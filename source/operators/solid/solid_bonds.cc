@@ -26,15 +26,18 @@ namespace PeriDeal
     {
       if (completes_mesh(body))
         {
-          const auto goes_on = [&](const types::boundary_id side) {
-            return goes_on_beyond(body, side);
+          const auto beyond_sides = [&](const auto &goes_on) {
+            return boundary_images<dim>(families.nodes(),
+                                        body.boundary_conditions.symmetry,
+                                        goes_on,
+                                        families.weights().reach());
           };
           auto beyond = std::make_unique<FictitiousBonds<dim>>(
             families,
-            boundary_images(families.nodes(),
-                            body.boundary_conditions.symmetry,
-                            goes_on,
-                            families.weights().reach()));
+            beyond_sides([&](const types::boundary_id side) { return goes_on_beyond(body, side); }),
+            completes_at_surfaces(body) ?
+              beyond_sides([](const types::boundary_id) { return true; }) :
+              std::vector<BoundaryImage<dim>>());
           beyond->add_weights(weighted);
           return beyond;
         }

@@ -62,8 +62,13 @@ namespace PeriDeal
     FictitiousBondList<dim> on_lattice(const std::array<BeyondSide, 2 * dim> &beyond,
                                        const bool                             completes);
 
-    /** On a mesh. Collective. */
-    FictitiousBondList<dim> on_mesh(const std::vector<BoundaryImage<dim>> &beyond);
+    /**
+     * On a mesh. Collective.
+     * @param everywhere if any, the images beyond all sides: what of these are none of @p beyond is
+     *                   made up for
+     */
+    FictitiousBondList<dim> on_mesh(const std::vector<BoundaryImage<dim>> &beyond,
+                                    const std::vector<BoundaryImage<dim>> &everywhere);
 
   private:
     using Site  = typename FictitiousExtension<dim>::Site;
@@ -86,11 +91,25 @@ namespace PeriDeal
     void                       find_on_lattice(const unsigned int i);
     void                       find_site(const unsigned int i, const unsigned int member);
     const std::vector<double> *completing_factors(const unsigned int i);
-    void                       find_on_mesh(const unsigned int                     i,
-                                            const std::vector<BoundaryImage<dim>> &beyond,
-                                            const PointBins<dim>                  &bins,
-                                            std::vector<unsigned int>             &number_of);
 
+    struct MeshImages;
+    struct MeshBond;
+    using EvenMoments = std::array<double, dim *(dim + 1) * (dim + 2) * (dim + 3) / 24>;
+
+    std::vector<MeshBond> bonds_to(const unsigned int i, const MeshImages &beyond) const;
+    void                  add(const unsigned int image, const MeshBond &bond);
+    void                  complete_on_mesh(const unsigned int           i,
+                                           const std::vector<MeshBond> &bonds,
+                                           MeshImages                  &beyond,
+                                           const std::vector<MeshBond> &everywhere);
+    static EvenMoments    even_moments(const dealii::Tensor<1, dim> &xi);
+
+    // A second image at the place of one, for what does not break by itself.
+    unsigned int beside_of(const unsigned int        image,
+                           const std::vector<Term>  &terms,
+                           const dealii::Point<dim> *twice_planes);
+    unsigned int beside_on_mesh(const unsigned int g, MeshImages &beyond);
+    unsigned int image_on_mesh(const unsigned int g, MeshImages &beyond);
     unsigned int image_of(const unsigned int node); // that is the node itself
     unsigned int image_at(const Index &index, const double volume);
 

@@ -56,8 +56,10 @@ namespace PeriDeal
                     const bool                             completes,
                     const bool                             may_pack);
 
-    /** The same of a mesh. Collective. */
-    FictitiousBonds(const Families<dim> &families, const std::vector<BoundaryImage<dim>> &beyond);
+    /** The same of a mesh, as FictitiousBondSearch::on_mesh(). Collective. */
+    FictitiousBonds(const Families<dim>                   &families,
+                    const std::vector<BoundaryImage<dim>> &beyond,
+                    const std::vector<BoundaryImage<dim>> &everywhere);
 
     /** Add sum W x^2/V_i to q of the owned nodes. */
     void add_weights(Vector &q) const;
