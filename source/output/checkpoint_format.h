@@ -12,6 +12,6 @@ namespace PeriDeal
   {
     constexpr std::size_t head_size = 512;
     constexpr const char *title     = "PeriDeal checkpoint ";
-    constexpr unsigned    number    = 1;
+    constexpr unsigned    number    = 2;
   } // namespace CheckpointFormat
 } // namespace PeriDeal

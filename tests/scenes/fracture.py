@@ -162,7 +162,7 @@ def mesh():
         check(line in scene, f"the scene has {line.strip()}")
         scene = scene.replace(line, "")
     path = write_mesh([-0.5 + i / 24 for i in range(25)], [-1 + 2 * i / 49 for i in range(50)])
-    # Free sides of lattices are completed, those of meshes are not: here both end.
+    # Free sides of lattices and meshes are completed by different moments: here both end.
     shared = {**QUIET, "Domain/Nodes": "vertices", "Peridynamics/Horizon": "0.125", "Peridynamics/Surface correction": "none", "Solver/Tolerance": "1e-11", "Time/Time step": "0.02"}
     box = run_scene(scene, {**shared, "Domain/Lower corner": "-0.5, -1", "Domain/Upper corner": "0.5, 1", "Domain/Cells": "24, 49",
                            "Boundary conditions/Displacement": "top: 0, 0.015*t; bottom: 0, -0.015*t"})

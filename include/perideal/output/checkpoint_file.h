@@ -31,7 +31,7 @@ namespace PeriDeal
 
 
   /*
-   * A checkpoint is an HDF5 file behind a head of 512 bytes, which is text: `PeriDeal checkpoint 1`
+   * A checkpoint is an HDF5 file behind a head of 512 bytes, which is text: `PeriDeal checkpoint 2`
    * (the number of the format), the length of the file in bytes, and the checksum of all behind the
    * head. The file has
    *

@@ -32,15 +32,18 @@ namespace PeriDeal
 
 
   /**
-   * In motion and where bonds may break, families of an elastic body on a lattice that end
-   * elsewhere, at voids and free sides, are completed by their own bonds (FamilyCompletion), with
-   * `Surface correction = auto`. Not collective.
+   * In motion and where bonds may break, families of an elastic body that end elsewhere, at voids
+   * and free sides, are completed by their own bonds (on a lattice FamilyCompletion, on a mesh
+   * FictitiousBondSearch::on_mesh()), with `Surface correction = auto`. Not collective.
    */
   template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body);
 
 
-  /** Some families end where the body does, and nothing makes up for it. Not collective. */
+  /**
+   * Some families end where the body does, and nothing makes up for it, or, on a mesh whose bonds
+   * may break or in motion, their own bonds as far as they can. Not collective.
+   */
   template <int dim>
   bool families_end(const BodyParameters<dim> &body);
 

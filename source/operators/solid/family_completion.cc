@@ -79,7 +79,7 @@ namespace PeriDeal
           return std::abs(g) < 1e-9 * size;
         }))
       return factors;
-    const std::vector<double> additions = least_additions(moments, weight, gap);
+    const std::vector<double> additions = least_additions(moments, weight, gap, 1e-9);
     for (unsigned int m = 0; m < members.size(); ++m)
       if (volumes[m] > 0.)
         factors[m] += (1. + factors[m]) * additions[m];

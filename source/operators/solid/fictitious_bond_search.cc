@@ -7,6 +7,7 @@
 #include <perideal/operators/solid/fictitious_cuts.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "least_additions.h"
@@ -14,6 +15,20 @@
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** In how many orders these may stand, equal ones being the same. */
+    double n_orders(std::array<unsigned int, 4> components)
+    {
+      std::sort(components.begin(), components.end());
+      unsigned int n = 1;
+      while (std::next_permutation(components.begin(), components.end()))
+        ++n;
+      return n;
+    }
+  } // namespace
+
 
   template <int dim>
   FictitiousBondSearch<dim>::FictitiousBondSearch(const Families<dim>   &families,
@@ -217,19 +232,22 @@ namespace PeriDeal
   }
 
 
-  /** The products n_a n_b n_c n_d, a <= b <= c <= d, of n = xi/x. */
+  /**
+   * The products n_a n_b n_c n_d, a <= b <= c <= d, of n = xi/x, each times the root of how often
+   * it occurs in the tensor: their squares sum to its norm, however the body is turned.
+   */
   template <int dim>
-  typename FictitiousBondSearch<dim>::EvenMoments FictitiousBondSearch<dim>::even_moments(
+  typename FictitiousBondSearch<dim>::FourthMoments FictitiousBondSearch<dim>::fourth_moments(
     const Tensor<1, dim> &xi)
   {
     const Tensor<1, dim> n = xi / xi.norm();
-    EvenMoments          all;
+    FourthMoments        all;
     unsigned int         k = 0;
     for (unsigned int a = 0; a < dim; ++a)
       for (unsigned int b = a; b < dim; ++b)
         for (unsigned int c = b; c < dim; ++c)
           for (unsigned int d = c; d < dim; ++d)
-            all[k++] = n[a] * n[b] * n[c] * n[d];
+            all[k++] = std::sqrt(n_orders({a, b, c, d})) * n[a] * n[b] * n[c] * n[d];
     return all;
   }
 
@@ -241,14 +259,14 @@ namespace PeriDeal
                                                    const std::vector<MeshBond> &everywhere)
   {
     // What images beyond the other sides would have of sum w x^2 n_a n_b n_c n_d.
-    EvenMoments gap{};
-    double      size       = 0.;
-    const auto  add_to_gap = [&](const std::vector<MeshBond> &some, const double sign) {
+    FourthMoments gap{};
+    double        size       = 0.;
+    const auto    add_to_gap = [&](const std::vector<MeshBond> &some, const double sign) {
       for (const MeshBond &bond : some)
         if (bond.w > 0.)
           {
-            const EvenMoments moments = even_moments(bond.xi);
-            const double      square  = bond.w * bond.xi.norm_square();
+            const FourthMoments moments = fourth_moments(bond.xi);
+            const double        square  = bond.w * bond.xi.norm_square();
             size += square;
             for (unsigned int k = 0; k < gap.size(); ++k)
               gap[k] += sign * square * moments[k];
@@ -264,7 +282,7 @@ namespace PeriDeal
     // for bonds of the whole.
     std::vector<typename Families<dim>::Member> members;
     std::vector<MeshBond>                       own;
-    std::vector<EvenMoments>                    moments;
+    std::vector<FourthMoments>                  moments;
     std::vector<double>                         squares;
     families.members_of(i, members);
     for (const auto &member : members)
@@ -274,12 +292,13 @@ namespace PeriDeal
     own.insert(own.end(), bonds.begin(), bonds.end());
     for (const MeshBond &bond : own)
       {
-        moments.push_back(even_moments(bond.xi));
+        moments.push_back(fourth_moments(bond.xi));
         squares.push_back(bond.w * bond.xi.norm_square());
       }
-    const std::vector<double> additions = least_additions(moments, squares, gap);
+    const std::vector<double> additions = least_additions(moments, squares, gap, 1e-6);
+    constexpr double          least     = 1e-6; // what is less may be round-off
     for (unsigned int k = 0; k < own.size(); ++k)
-      if (additions[k] > 1e-9 && own[k].w > 0.)
+      if (additions[k] > least && own[k].w > 0.)
         add(k < members.size() ? image_of(own[k].image) : beside_on_mesh(own[k].image, beyond),
             {own[k].xi, own[k].image, own[k].w * additions[k]});
   }

@@ -14,15 +14,17 @@
 namespace PeriDeal
 {
   /**
-   * By how much of themselves weights w_m >= 0 with moments mu_m have to grow, so that their sum
-   * grows by a gap: of all additions the least (in the mean of their weights), w_m times the
-   * positive part of multipliers . mu_m. Nothing gets less. Directions in which there are no
-   * weights keep their gap.
+   * By how much a_m of themselves weights w_m >= 0 with moments mu_m have to grow, so that their
+   * sum grows by a gap: of all a_m >= 0 those that come nearest to it, and of these the least, sum
+   * w_m a_m^2 (non-negative least squares). They are the positive parts of multipliers . mu_m.
+   * @param ridge what can be met is met to about this, relatively; where a gap cannot be met,
+   *              round-off is made 1/ridge times larger
    */
   template <std::size_t n_moments>
   std::vector<double> least_additions(const std::vector<std::array<double, n_moments>> &moments,
                                       const std::vector<double>                        &weight,
-                                      const std::array<double, n_moments>              &gap)
+                                      const std::array<double, n_moments>              &gap,
+                                      const double                                      ridge)
   {
     const auto product = [&](const std::size_t m, const dealii::Vector<double> &multipliers) {
       double sum = 0.;
@@ -35,7 +37,8 @@ namespace PeriDeal
     for (std::size_t m = 0; m < moments.size(); ++m)
       for (std::size_t n = 0; n < n_moments; ++n)
         all += weight[m] * moments[m][n] * moments[m][n];
-    const double least = 1e-9 * all;
+    constexpr double smallest = 1e-15; // part of a step: far bonds may join after as little
+    const double     least    = ridge * all;
     // The multipliers are where a concave function of them is largest.
     const auto value = [&](const dealii::Vector<double> &multipliers) {
       double sum = right * multipliers - 0.5 * least * multipliers.norm_sqr();
@@ -62,13 +65,13 @@ namespace PeriDeal
                 for (std::size_t k = 0; k < n_moments; ++k)
                   matrix(n, k) += weight[m] * moments[m][n] * moments[m][k];
               }
-        if (gradient.linfty_norm() < 1e-12 * right.linfty_norm())
+        if (gradient.linfty_norm() < 1e-11 * right.linfty_norm())
           break;
         matrix.gauss_jordan();
         matrix.vmult(step, gradient);
         const double before = value(multipliers), expected = step * gradient;
         double       part = 1.;
-        for (dealii::Vector<double> tried = multipliers; part > 1e-6; part *= 0.5)
+        for (dealii::Vector<double> tried = multipliers; part > smallest; part *= 0.5)
           {
             tried = multipliers;
             tried.add(part, step);
@@ -78,7 +81,7 @@ namespace PeriDeal
                 break;
               }
           }
-        if (part <= 1e-6)
+        if (part <= smallest)
           break;
       }
     std::vector<double> additions(moments.size());

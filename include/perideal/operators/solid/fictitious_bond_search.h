@@ -45,8 +45,8 @@ namespace PeriDeal
 
   /**
    * Finds the bonds of a solid's nodes that lead beyond the sides of the body, and those in the
-   * body that count more where a family is completed by its own bonds (FamilyCompletion): these
-   * lead to an image that is a node of the body itself. Used once.
+   * body that count more where a family is completed by its own bonds: these lead to an image that
+   * is a node of the body itself. Used once.
    */
   template <int dim>
   class FictitiousBondSearch
@@ -94,7 +94,7 @@ namespace PeriDeal
 
     struct MeshImages;
     struct MeshBond;
-    using EvenMoments = std::array<double, dim *(dim + 1) * (dim + 2) * (dim + 3) / 24>;
+    using FourthMoments = std::array<double, dim *(dim + 1) * (dim + 2) * (dim + 3) / 24>;
 
     std::vector<MeshBond> bonds_to(const unsigned int i, const MeshImages &beyond) const;
     void                  add(const unsigned int image, const MeshBond &bond);
@@ -102,7 +102,7 @@ namespace PeriDeal
                                            const std::vector<MeshBond> &bonds,
                                            MeshImages                  &beyond,
                                            const std::vector<MeshBond> &everywhere);
-    static EvenMoments    even_moments(const dealii::Tensor<1, dim> &xi);
+    static FourthMoments  fourth_moments(const dealii::Tensor<1, dim> &xi);
 
     // A second image at the place of one, for what does not break by itself.
     unsigned int beside_of(const unsigned int        image,

@@ -13,8 +13,8 @@ namespace PeriDeal
 {
   /**
    * The fictitious nodes beyond the sides of a solid to which nodes of the body have bonds, and
-   * those of its nodes that count more in the families of others (FamilyCompletion). The
-   * displacement of each, u_g = P u, is linear in that of nodes of the body; the force on it is
+   * those of its nodes that count more in the families of others, which their own bonds complete.
+   * The displacement of each, u_g = P u, is linear in that of nodes of the body; the force on it is
    * passed on to them through P^T.
    *
    * Values and forces are scratch memory: they hold until the next find() and begin_forces().
