@@ -39,6 +39,33 @@ namespace PeriDeal
     }
 
 
+    /**
+     * A strip, bar or plate on a lattice: less than eight horizons thick (with its mirror image at
+     * planes of symmetry), and three times as long. What a linear continuation adds beyond free
+     * sides makes such bodies too stiff in bending.
+     */
+    template <int dim>
+    bool is_slender(const BodyParameters<dim> &body)
+    {
+      if (!body.domain.has_lattice())
+        return false;
+      Tensor<1, dim> extent = body.domain.upper - body.domain.lower;
+      for (const types::boundary_id side : body.boundary_conditions.symmetry)
+        if (side < 2 * dim)
+          extent[side / 2] *= 2.;
+      const auto [thin, length] = std::minmax_element(extent.begin_raw(), extent.end_raw());
+      return *thin < 7.999 * body.horizon() && *length > 2.999 * *thin;
+    }
+
+
+    /** What families lack at free sides is made up for in part by weights of their own bonds. */
+    template <int dim>
+    bool takes_own_bonds(const BodyParameters<dim> &body)
+    {
+      return takes_steps(body) || is_slender(body);
+    }
+
+
     /** Why no families can go on beyond the sides; empty where they can. */
     template <int dim>
     Hindrance find_hindrance(const BodyParameters<dim> &body)
@@ -175,7 +202,7 @@ namespace PeriDeal
     if (automatic && (!body.domain.has_lattice() || !hindrance_of_fictitious_nodes(body).empty()))
       return beyond;
     const auto &conditions = body.boundary_conditions;
-    beyond.fill(!automatic || !takes_steps(body) ? BeyondSide::continued :
+    beyond.fill(!automatic || !takes_own_bonds(body) ? BeyondSide::continued :
                 completes_at_surfaces(body)      ? BeyondSide::in_part :
                                                    BeyondSide::nothing);
     const auto set = [&](const types::boundary_id side, const BeyondSide value) {
@@ -197,7 +224,7 @@ namespace PeriDeal
   template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body)
   {
-    return takes_steps(body) && (body.domain.has_lattice() || completes_mesh(body)) &&
+    return takes_own_bonds(body) && (body.domain.has_lattice() || completes_mesh(body)) &&
            !body.domain.has_extra_layers() &&
            body.peridynamics.surface_correction == SurfaceCorrection::automatic &&
            hindrance_of_fictitious_nodes(body).empty();
@@ -213,7 +240,7 @@ namespace PeriDeal
     return !hindrance_of_fictitious_nodes(body).empty() ||
            (completes_mesh(body) && takes_steps(body)) ||
            (body.domain.has_lattice() && !completes_at_surfaces(body) &&
-            (takes_steps(body) || body.domain.has_voids()));
+            (takes_own_bonds(body) || body.domain.has_voids()));
   }
 
 

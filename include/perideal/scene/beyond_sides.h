@@ -23,18 +23,20 @@ namespace PeriDeal
   /**
    * Of the sides left, right, bottom, top, back, front. With `Surface correction = fictitious
    * nodes` all go on. With `auto` they do where the scene allows, for `Models = peridynamics`; in
-   * motion, and where bonds may break, those without conditions do in part: the nodes that
-   * fictitious ones follow are stiff, at corners most, and explicit steps would be short. Not
-   * collective.
+   * motion, where bonds may break, and in slender bodies on a lattice (less than eight horizons
+   * thick and three times as long), those without conditions do in part: the nodes that fictitious
+   * ones follow are stiff, at corners most, and explicit steps would be short; and slender bodies
+   * would be too stiff in bending. Not collective.
    */
   template <int dim>
   std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);
 
 
   /**
-   * In motion and where bonds may break, families of an elastic body that end elsewhere, at voids
-   * and free sides, are completed by their own bonds (on a lattice FamilyCompletion, on a mesh
-   * FictitiousBondSearch::on_mesh()), with `Surface correction = auto`. Not collective.
+   * In motion, where bonds may break, and in slender bodies on a lattice, families of an elastic
+   * body that end elsewhere, at voids and free sides, are completed by their own bonds (on a
+   * lattice FamilyCompletion, on a mesh FictitiousBondSearch::on_mesh()), with `Surface correction
+   * = auto`. Not collective.
    */
   template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body);
