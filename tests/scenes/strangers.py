@@ -207,6 +207,16 @@ def refusals():
     refused = run_scene(GRIP, {"Models": FE, BC + "Parts": "grip: point 0, 0.2 ; back: point 1, 0.2", BC + "Displacement": "grip: 0, 1e-3 ; back: 0, free"}, expect_error=True)
     check("rotation" in refused.stderr, "a body that may turn is refused as before")
 
+    # Oblique cracks from a side: a node there of which they leave no cell follows its neighbour. 11.39: four times as fine, coupled.
+    node = (0, 19 / 41)
+    oblique = {"Models": FE, "Domain/Upper corner": "1, 1", "Domain/Cells": "41, 41", BC + "Parts": "", BC + "Displacement": "bottom: 0, 0", BC + "Traction": "top: 0, 1",
+               "Cracks/Segments": "-0.026, 0.435 ; 0.433, 0.7", "Output/Probes": f"0, 1 ; {node[0]}, {node[1]!r}"}
+    alone, shared = (run_scene(GRIP, oblique, ranks=ranks) for ranks in (1, 2))
+    check_close(alone.probe(FE, (0, 1), column="uy"), 11.39, relative=0.06, what="a plate with an oblique crack from a side")
+    for place in ((0, 1), node):
+        check_close(shared.probe(FE, place, column="uy"), alone.probe(FE, place, column="uy"), relative=1e-8, what=f"the same at {place} on 2 processes")
+    check(alone.probe(FE, node, column="uy") > 10, "its mouth moves with the upper side")
+
     exact = enthalpies(160, 0.1)
     for stepper in ("sdirk2", "bdf2", "crank nicolson"):
         run = run_scene(LATENT, {"Time/Stepper": stepper})

@@ -69,6 +69,22 @@ namespace PeriDeal
 
 
   template <int dim>
+  void HangingNodes<dim>::let_follow(
+    const std::vector<std::pair<unsigned int, unsigned int>> &pairs,
+    const MPI_Comm                                            communicator)
+  {
+    for (const auto &[unknown, master] : pairs)
+      {
+        const auto place = std::lower_bound(unknowns.begin(), unknowns.end(), unknown);
+        masters.insert(masters.begin() + (place - unknowns.begin()), {{master, 1.}});
+        unknowns.insert(place, unknown);
+      }
+    on_any_process = Utilities::MPI::max(unknowns.empty() ? 0 : 1, communicator) > 0 ||
+                     on_any_process;
+  }
+
+
+  template <int dim>
   bool HangingNodes<dim>::any() const
   {
     return on_any_process;

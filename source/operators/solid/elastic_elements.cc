@@ -65,9 +65,9 @@ namespace PeriDeal
         this->initialize_vector(force_change);
       }
     find_positions();
-    find_conditions();
     // Where tips cut in part, ends on sides are none.
     cut_by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
+    find_conditions();
     assemble();
     this->keep_constant_loads();
     if (zone_bonds && body.coupling.exchanges() && !body.cracks.on_faces() &&
@@ -157,6 +157,14 @@ namespace PeriDeal
                                                                false,
                                                                dofs.get_communicator());
     conditions->pin(own, body, false);
+    if (!zone_bonds && !body.cracks.cracks.empty() && dofs.get_fe().degree == 1)
+      {
+        Vector free(unknowns);
+        free = 1.;
+        conditions->mask(free);
+        hanging.let_follow(find_followers(dofs, cut_by_cracks, free, Vector(nodes)),
+                           dofs.get_communicator());
+      }
     conditions->let_follow(hanging.owned());
   }
 
@@ -479,14 +487,6 @@ namespace PeriDeal
     this->initialize_vector(image);
     multiply(image, u);
     return 0.5 * (u * image) - u * thermal_loads + thermal_energy + contact->energy(u);
-  }
-
-
-  template <int dim>
-  const std::shared_ptr<const Utilities::MPI::Partitioner> &ElasticElements<dim>::node_layout()
-    const
-  {
-    return nodes;
   }
 
 

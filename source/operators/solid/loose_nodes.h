@@ -5,9 +5,16 @@
 
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/types.h>
+#include <perideal/operators/parts/cut_cells.h>
 #include <perideal/scene/lists.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -31,6 +38,66 @@ namespace PeriDeal
            (coupled ?
               "fewer cracks, or a wider 'Zone' in section 'Coupling' where only a part of the body has bonds." :
               "'Models = coupled' with a zone around the cracks, or 'Mesh = faces' in section 'Cracks'.");
+  }
+
+
+  /**
+   * Nodes of elements of which cracks leave no cell, as where an oblique crack leaves the body, and
+   * the nearest node that has one, in a cell of both and on the same side of the cracks: local
+   * numbers of their unknowns, interleaved, ascending. Collective.
+   *
+   * @param free 1 at unknowns that no condition prescribes
+   */
+  template <int dim>
+  std::vector<std::pair<unsigned int, unsigned int>>
+  find_followers(const dealii::DoFHandler<dim> &dofs,
+                 const CutCells<dim>           &cut_cells,
+                 const Vector                  &free,
+                 Vector                         n_kept) // 0 at each node
+  {
+    const unsigned int                           n = dofs.get_fe().n_dofs_per_cell();
+    std::vector<dealii::types::global_dof_index> indices(n);
+    const auto for_each_cell = [&](const bool all, const auto &visit) {
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (all ? !cell->is_artificial() : cell->is_locally_owned())
+          if ((cut_cells.kept_of_removed(cell) == 0.) == all)
+            {
+              cell->get_dof_indices(indices);
+              visit(cell);
+            }
+    };
+    for_each_cell(false, [&](const auto &) {
+      for (const auto index : indices)
+        n_kept(index) += 1.;
+    });
+    n_kept.compress(dealii::VectorOperation::add);
+    n_kept.update_ghost_values();
+    // Of nodes equally far the first by place: independent of numbers of processes.
+    using Master = std::pair<std::array<double, 1 + dim>, unsigned int>;
+    std::map<unsigned int, Master> found;
+    const auto                    &layout = *n_kept.get_partitioner();
+    for_each_cell(true, [&](const auto &cell) {
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int b = 0; b < n; ++b)
+          if (layout.in_local_range(indices[a]) && n_kept(indices[a]) == 0. &&
+              n_kept(indices[b]) > 0. &&
+              cut_cells.kept_fraction(cell, a, b, [](auto, auto) { return 1.; }) > 0.)
+            {
+              Master master{{}, layout.global_to_local(indices[b])};
+              const double r = cell->vertex(a).distance(cell->vertex(b));
+              master.first[0] = std::round(1e6 * r / cell->diameter());
+              for (unsigned int d = 0; d < dim; ++d)
+                master.first[1 + d] = cell->vertex(b)[d];
+              const auto at = found.try_emplace(layout.global_to_local(indices[a]), master).first;
+              at->second    = std::min(at->second, master);
+            }
+    });
+    std::vector<std::pair<unsigned int, unsigned int>> pairs;
+    for (const auto &[node, master] : found)
+      for (unsigned int d = 0; d < dim; ++d)
+        if (free.local_element(dim * node + d) != 0.)
+          pairs.emplace_back(dim * node + d, dim * master.second + d);
+    return pairs;
   }
 
 

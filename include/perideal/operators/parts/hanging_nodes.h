@@ -40,6 +40,15 @@ namespace PeriDeal
                  const dealii::Utilities::MPI::Partitioner &layout,
                  const unsigned int                         n_components = 1);
 
+    /**
+     * Let owned unknowns follow from one other each, too, of the same component: those of nodes of
+     * which cracks leave no cell. @param pairs local numbers of the unknown and its master, which
+     * may be a ghost, ascending. is_hanging() does not know them: no cell has a part of them.
+     * Collective.
+     */
+    void let_follow(const std::vector<std::pair<unsigned int, unsigned int>> &pairs,
+                    const MPI_Comm                                            communicator);
+
     /** On any process. */
     bool any() const;
 

@@ -142,7 +142,10 @@ namespace PeriDeal
     }
 
     /** The layout of vectors with one number for each node. */
-    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &node_layout() const;
+    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &node_layout() const
+    {
+      return nodes;
+    }
 
     /** Volume of a node: its share of the lumped integral of 1. */
     double volume(const unsigned int node) const
@@ -273,7 +276,7 @@ namespace PeriDeal
     std::unique_ptr<SolidBondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     std::unique_ptr<ZoneBreaking<dim>>             breaking;   // null: no bonds may break
     CutCells<dim>                                  cut_by_cracks;
-    const HangingNodes<dim>                        hanging;
+    HangingNodes<dim>                              hanging;
     const ElementLoads<dim>                        mechanical;
     std::vector<dealii::Point<dim>>                positions;
     mutable ElementMatrix<dim, dim>                stiffness;
