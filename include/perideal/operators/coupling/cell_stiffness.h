@@ -94,12 +94,12 @@ namespace PeriDeal
             parts = parts || crack.separates(corners[a], corners[b]);
       return parts;
     });
-    Range      range;
+    Range range;
     for (unsigned int q = 0; q < (parted ? 2 : 1) * n_corners; ++q)
       {
         const CornerValues &shape = shapes[q];
-        dealii::Point<dim> p;
-        double             T = 0.;
+        dealii::Point<dim>  p;
+        double              T = 0.;
         for (unsigned int v = 0; v < n_corners; ++v)
           {
             p += shape[v] * corners[v];
