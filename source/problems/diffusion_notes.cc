@@ -278,7 +278,7 @@ namespace PeriDeal
               volume += cell->measure();
               continue;
             }
-          if (one)
+          if (one || cut[cell->active_cell_index()]) // cut cells conduct in pairs
             continue;
           values.reinit(cell);
           double sum = 0., resistance = 0., least = 1e300, most = 0.;

@@ -123,7 +123,7 @@ Output/Fields = none
 
 
 def contact():
-    """In series: 0.5/5 + 1/2 + 0.5/1 = 1.1."""
+    """In series: 0.5/5 + 1/2 + 0.5/1 = 1.1, or x/5 + 1/2 + (1 - x)/1 beside faces of cells; oblique: piecewise linear."""
     table = Comparison("Contact conductance between two materials")
     cases = {"41 cells": {}, "phases exchanged": {"Material/Conductivity": "5", "Material/Phases/Conductivity": "left half: 1"},
              "40 cells": {"Domain/Cells": "40, 10"}, "40 cells, nodes on the crack": {"Domain/Cells": "40, 10", "Cracks/Nodes on cracks": "left"},
@@ -136,6 +136,26 @@ def contact():
         area = 0.04 if name == "3D" else 0.25
         for model in run.summary["models"]:
             table.add(f"{name}, {model}", abs(run.model(model)["boundary flux"]["right"]) / area, 1 / 1.1, relative=1e-6)
+    for cells in (0.1, 0.99):
+        x = (20 + cells) / 41
+        for left, right in ((5, 1), (1, 5)):
+            run = run_scene(WALL, {"Material/Phases/Regions": f"left half: {x} - x", "Cracks/Segments": f"{x},-1 ; {x},2",
+                                   "Material/Conductivity": right, "Material/Phases/Conductivity": f"left half: {left}"})
+            check("materials meet" not in run.stdout, f"{cells} cells beside a face: a note on mixed cells where a crack parts the materials")
+            for model in run.summary["models"]:
+                table.add(f"{cells} cells beside a face, {left} and {right}, {model}", abs(run.model(model)["boundary flux"]["right"]) / 0.25,
+                          1 / (x / left + 0.5 + (1 - x) / right), relative=1e-8)
+    for name, normal, overrides in (("oblique", (0.8, 0.6), {"Cracks/Segments": "1.45625,-1 ; -0.79375,2"}),
+                                    ("oblique in 3D", (2 / 3, 2 / 3, 1 / 3), {"Cracks/Polygons": "2,-1,-0.85 ; 2,2,-6.85 ; -1,2,-0.85 ; -1,-1,5.15", "Domain/Cells": "8, 8, 8"})):
+        dim = len(normal)
+        far = " + ".join(f"{n}*{x}" for n, x in zip(normal, "xyz")) + f" - {0.565 if dim == 2 else 0.3833333333333333}"
+        exact = f"if({far} < 0, ({far})/5, 0.5 + {far})"
+        sides = ("left", "right", "bottom", "top", "back", "front")[:2 * dim]
+        run = run_scene(WALL, {"Dimension": dim, "Domain/Upper corner": ", ".join("1" * dim), "Domain/Cells": "20, 20", "Cracks/Segments": "",
+                               "Material/Phases/Regions": f"left half: -({far})", "Reference/Solution": exact,
+                               BC + "Dirichlet": " ; ".join(f"{side}: {exact}" for side in sides), **overrides})
+        for model in run.summary["models"]:
+            table.add_limit(f"{name}, {model}: largest error", run.error(model, kind="maximum"), 1e-8)
     two = run_scene(WALL, {"Models": PD}, ranks=2)
     one = run_scene(WALL, {"Models": PD})
     check_close(two.model(PD)["boundary flux"]["right"], one.model(PD)["boundary flux"]["right"], relative=1e-9, what="on 2 processes")

@@ -53,7 +53,10 @@ namespace PeriDeal
     const MaterialProperty &kappa = body.material.conductivity;
     return {[&kappa](const Point<dim> &p, const double T) { return kappa.value(p, T); },
             body.material.uniform_conductivity(),
-            kappa.depends_on_temperature() ? &body.initial_and_source.initial_value : nullptr};
+            kappa.depends_on_temperature() ? &body.initial_and_source.initial_value : nullptr,
+            body.material.uniform_conductivity() || !body.cracks.cut_pairs() ?
+              std::vector<CrackGeometry<dim>>() :
+              make_crack_geometries(body.crack_history().pieces(body.cracks.end_time))};
   }
 
 
@@ -155,7 +158,8 @@ namespace PeriDeal
               return bond_part(body.material.moduli(p), dim, body.elasticity.plane);
             },
             body.material.uniform_moduli(),
-            nullptr};
+            nullptr,
+            {}};
   }
 
 

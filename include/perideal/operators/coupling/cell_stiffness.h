@@ -7,6 +7,7 @@
 
 #include <perideal/laws/interface.h>
 #include <perideal/mesh/cell_geometry.h>
+#include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/expression.h>
 
 #include <algorithm>
@@ -40,6 +41,7 @@ namespace PeriDeal
     std::function<double(const dealii::Point<dim> &, const double)> at;      // place, temperature
     bool                                                            uniform; // the same everywhere
     const Expression *start; // temperatures at first; null where the stiffness depends on none
+    std::vector<CrackGeometry<dim>> cracks; // that may have another material on each side
 
     bool depends_on_temperature() const
     {
@@ -57,7 +59,9 @@ namespace PeriDeal
     };
 
     /**
-     * The smallest and the largest at the Gauss points of a cell.
+     * The smallest and the largest at the Gauss points of a cell, and where a crack parts its
+     * corners also just inside of these: materials that meet at the crack between Gauss points and
+     * a side of the cell are two in it.
      * @param temperatures of the corners; null: those at first
      */
     Range range(const CellCorners<dim> &corners, const CornerValues *const temperatures) const;
@@ -74,13 +78,28 @@ namespace PeriDeal
       const dealii::QGauss<dim> points(2);
       for (const dealii::Point<dim> &q : points.get_points())
         list.push_back(shape_values(q));
+      for (unsigned int v = 0; v < n_corners; ++v)
+        {
+          const auto corner = dealii::GeometryInfo<dim>::unit_cell_vertex(v);
+          list.push_back(shape_values(
+            dealii::Point<dim>(corner + 1e-8 * (points.point(n_corners - 1 - v) - corner))));
+        }
       return list;
     }();
+    const bool parted = std::any_of(cracks.begin(), cracks.end(), [&](const auto &crack) {
+      bool parts = false;
+      if (crack.is_near(corners[0], corners[0].distance(corners[n_corners - 1])))
+        for (unsigned int a = 0; a < n_corners; ++a)
+          for (unsigned int b = 0; b < a; ++b)
+            parts = parts || crack.separates(corners[a], corners[b]);
+      return parts;
+    });
     Range range;
-    for (const CornerValues &shape : shapes)
+    for (unsigned int q = 0; q < (parted ? 2 : 1) * n_corners; ++q)
       {
-        dealii::Point<dim> p;
-        double             T = 0.;
+        const CornerValues &shape = shapes[q];
+        dealii::Point<dim>  p;
+        double              T = 0.;
         for (unsigned int v = 0; v < n_corners; ++v)
           {
             p += shape[v] * corners[v];
