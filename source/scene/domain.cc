@@ -339,7 +339,7 @@ namespace PeriDeal
           "'" + hole.text + "' (entry 'Holes' in section 'Domain') is thin for the cells: of the " +
           std::to_string(found.n_removed) + " that are removed for it, " +
           std::to_string(found.joints.size()) +
-          " have their centre beside it, so that it is open all along. It is a cell wide there.");
+          " have their centre beside it, so that it is open all along. It is a cell wide there. Thin holes that meet are better one polygon: where they do, cells may stay joined at a corner.");
       }
   }
 

@@ -204,10 +204,17 @@ namespace PeriDeal
           }
       }
 
-    // Where faces one after the other go to and fro along a rim, it is too thin or sharp for that.
+    // Holes with joints, and where faces one after the other go to and fro along a rim: too thin or
+    // sharp for that.
     std::vector<bool> is_sharp;
     for (std::size_t k = 0; k < holes.size(); ++k)
-      is_sharp.push_back(std::min(ways[k][0], ways[k][1]) > 1e-9 * holes[k].rim_length());
+      is_sharp.push_back(std::min(ways[k][0], ways[k][1]) > 1e-9 * holes[k].rim_length() ||
+                         std::any_of(listed.begin(), listed.end(), [&](const Hole &joint) {
+                           return joint.text.empty() &&
+                                  holes[k].distance(joint.corners[0] +
+                                                    0.5 * (joint.corners[2] - joint.corners[0])) <
+                                    0.75 * shortest;
+                         }));
     for (bool any = true; any;)
       {
         any = false;
