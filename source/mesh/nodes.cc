@@ -221,6 +221,7 @@ namespace PeriDeal
   template <int dim>
   void Nodes<dim>::find_boundary_shares(const Holes<dim> &holes)
   {
+    const RimFactors<dim> rim_over_face(holes, dofs->get_triangulation());
     for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int v) {
       for (const unsigned int f : cell->face_indices())
         if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() != crack_boundary_id)
@@ -231,7 +232,7 @@ namespace PeriDeal
               touches = touches || face->vertex_index(w) == cell->vertex_index(v);
             double measure = 1.;
             if constexpr (dim > 1)
-              measure = face->measure() * rim_over_face(holes, face);
+              measure = face->measure() * rim_over_face(face);
             if (touches)
               shares.push_back({node,
                                 face->boundary_id(),

@@ -172,6 +172,51 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  RimFactors<dim>::RimFactors(const Holes<dim> &holes, const Triangulation<dim> &mesh)
+  {
+    if constexpr (dim > 1)
+      {
+        if (!holes.has_one && holes.listed.empty())
+          return;
+        // All processes have all cells of the coarsest level. Faces one above the other are one.
+        const auto in_plane = [](const auto &p) { return Point<2>(p[0], p[1]); };
+        std::map<std::array<double, 4>, std::size_t> numbers;
+        std::vector<RimFace>                         faces;
+        std::vector<std::pair<int, std::size_t>>     found;
+        Point<2> lower = in_plane(mesh.begin(0)->vertex(0)), upper = lower;
+        for (const auto &cell : mesh.cell_iterators_on_level(0))
+          for (const unsigned int f : cell->face_indices())
+            {
+              const auto     face = cell->face(f);
+              const Point<2> a    = in_plane(face->vertex(0)),
+                             b    = in_plane(face->vertex(face->n_vertices() - 1));
+              for (unsigned int d = 0; d < 2; ++d)
+                {
+                  lower[d] = std::min({lower[d], a[d], b[d]});
+                  upper[d] = std::max({upper[d], a[d], b[d]});
+                }
+              if (!face->at_boundary() || face->boundary_id() != hole_boundary_id)
+                continue;
+              const auto [number, is_new] =
+                numbers.try_emplace({{a[0], a[1], b[0], b[1]}}, faces.size());
+              if (is_new)
+                {
+                  const Tensor<1, 2> outward = in_plane(face->center()) - in_plane(cell->center());
+                  faces.push_back({a, b, outward / outward.norm()});
+                }
+              found.emplace_back(face->index(), number->second);
+            }
+        const std::vector<double> factors = holes.rim_over_faces(faces, lower, upper);
+        for (const auto &[face, number] : found)
+          of_face[face] = factors[number];
+      }
+  }
+
+
+  template class RimFactors<1>;
+  template class RimFactors<2>;
+  template class RimFactors<3>;
   template FacePoints<1> points_in_part(const CellVertices<1> &,
                                         const unsigned int,
                                         const Part &,

@@ -150,6 +150,7 @@ namespace PeriDeal
       return *this;
     const bool                           vertices = dofs->get_fe().n_dofs_per_vertex() > 0;
     std::vector<types::global_dof_index> indices(dofs->get_fe().n_dofs_per_cell());
+    const RimFactors<dim>                rim_over_face(conditions.holes, dofs->get_triangulation());
     std::vector<Piece<dim>>              pieces;
     std::vector<double>                  areas(conditions.parts.size(), 0.);
     for (const auto &cell : dofs->active_cell_iterators())
@@ -164,7 +165,7 @@ namespace PeriDeal
               if (!cell->face(f)->at_boundary() || part.kind != Part::of_side ||
                   part.side != cell->face(f)->boundary_id())
                 continue;
-              const double          rim = rim_over_face(conditions.holes, cell->face(f));
+              const double          rim = rim_over_face(cell->face(f));
               const FacePoints<dim> points =
                 points_in_part<dim>(vertices_of<dim>(cell), f, part, 2);
               for (unsigned int v = 0; v < indices.size(); ++v)

@@ -120,7 +120,7 @@ namespace PeriDeal
       "",
       "length",
       "Holes in a box or in a plate with a hole, several separated by `;`: `circle: x, y, radius`, `rectangle: x, y, x, y` (its lower left and its upper right corner) and "
-      "`polygon: x, y, x, y, ...` (its corners). Lattice cells whose centre lies in one do not exist; all their rims are the side `hole`. In 3D they are bores along z.");
+      "`polygon: x, y, x, y, ...` (its corners). Lattice cells whose centre lies in one do not exist, nor those that a thin polygon needs to be open from end to end, a cell wide; all their rims are the side `hole`. In 3D they are bores along z.");
     declare("Hole radius",
             EntryType::number,
             "0.25",
@@ -317,29 +317,29 @@ namespace PeriDeal
     refuse(dim == 1, "Holes", "needs 'Dimension' 2 or 3.");
     holes.has_one = shape == Shape::plate_with_hole &&
                     (is_given("Hole center") || is_given("Hole radius"));
-    shape                  = Shape::plate_with_hole;
-    const Tensor<1, dim> h = spacing();
-    for (const Hole &hole : holes.listed)
+    shape = Shape::plate_with_hole;
+    const std::array<unsigned int, 2> n_cells{{cells[0], cells[dim > 1]}};
+    for (std::size_t k = 0, n = holes.listed.size(); k < n; ++k)
       {
-        // Some cell has to have its centre in the hole.
-        const auto          box = hole.box();
-        std::array<long, 2> from{}, to{};
-        for (int d = 0; d < std::min(dim, 2); ++d)
-          {
-            from[d] = std::max(0L, static_cast<long>((box.first[d] - lower[d]) / h[d] - 1.));
-            to[d]   = std::min(static_cast<long>(cells[d]) - 1,
-                             static_cast<long>((box.second[d] - lower[d]) / h[d] + 1.));
-          }
-        bool found = false;
-        for (long j = from[1]; j <= to[1] && !found; ++j)
-          for (long i = from[0]; i <= to[0] && !found; ++i)
-            found = hole.contains(Point<2>(lower[0] + (i + 0.5) * h[0],
-                                           dim > 1 ? lower[dim > 1] + (j + 0.5) * h[dim > 1] : 0.));
-        if (!found)
+        const Hole      hole  = holes.listed[k];
+        const HoleCells found = cells_of_hole(hole,
+                                              holes.listed,
+                                              Point<2>(lower[0], lower[dim > 1]),
+                                              Point<2>(upper[0], upper[dim > 1]),
+                                              n_cells);
+        if (found.n_removed == 0)
           error(
             "Holes",
             "'" + hole.text +
               "' holds no centre of a cell: it lies outside the body, or is smaller than a cell. Move it, or take more 'Cells'.");
+        if (found.joints.empty())
+          continue;
+        holes.listed.insert(holes.listed.end(), found.joints.begin(), found.joints.end());
+        notes.push_back(
+          "'" + hole.text + "' (entry 'Holes' in section 'Domain') is thin for the cells: of the " +
+          std::to_string(found.n_removed) + " that are removed for it, " +
+          std::to_string(found.joints.size()) +
+          " have their centre beside it, so that it is open all along. It is a cell wide there. Thin holes that meet are better one polygon: where they do, cells may stay joined at a corner.");
       }
   }
 

@@ -59,78 +59,6 @@ namespace PeriDeal
         entry_error(at, "'" + numbers + "' has no area.");
       return hole;
     }
-
-
-    struct PointOnRim
-    {
-      const Hole *hole;
-      Point<2>    place;
-    };
-
-
-    /** The nearest points of a circle, or of each edge of a polygon. */
-    std::vector<PointOnRim> nearest_on_rim(const Point<2> &p, const Hole &hole)
-    {
-      if (hole.corners.empty())
-        return {{&hole, hole.point_on_rim(hole.place_on_rim(p))}};
-      std::vector<PointOnRim> points;
-      for (std::size_t i = 0; i < hole.corners.size(); ++i)
-        {
-          const Point<2>     a    = hole.corners[i];
-          const Tensor<1, 2> edge = hole.corners[(i + 1) % hole.corners.size()] - a;
-          points.push_back(
-            {&hole, a + std::clamp((p - a) * edge / edge.norm_square(), 0., 1.) * edge});
-        }
-      return points;
-    }
-
-
-    /** The nearest point of the rims, of what of them lies in no other hole if there is any. */
-    PointOnRim nearest_on_rims(const Point<2> &p, const std::vector<Hole> &holes, const double tiny)
-    {
-      PointOnRim nearest{};
-      auto       least = std::make_pair(true, std::numeric_limits<double>::max());
-      for (const Hole &hole : holes)
-        for (const PointOnRim &point : nearest_on_rim(p, hole))
-          {
-            if (!least.first && p.distance(point.place) >= least.second)
-              continue;
-            const bool hidden = std::any_of(holes.begin(), holes.end(), [&](const Hole &other) {
-              return &other != &hole && other.distance(point.place) < -tiny;
-            });
-            if (const auto found = std::make_pair(hidden, p.distance(point.place)); found < least)
-              {
-                nearest = point;
-                least   = found;
-              }
-          }
-      return nearest;
-    }
-
-
-    /**
-     * Where the rim of a hole enters another one, along it from what is nearest to a point, in the
-     * nearer direction and within a distance; the point if it does not.
-     */
-    Point<2> entry_from(const Point<2> &a, const Hole &hole, const Hole &other, const double within)
-    {
-      constexpr int n     = 64;
-      const double  start = hole.place_on_rim(a);
-      for (int k = 1; k <= n; ++k)
-        for (const double direction : {1., -1.})
-          if (double outside = (k - 1) * within / n, inside = k * within / n;
-              other.contains(hole.point_on_rim(start + direction * inside)))
-            {
-              for (int halving = 0; halving < 50; ++halving)
-                {
-                  const double middle = 0.5 * (outside + inside);
-                  const bool is_in = other.contains(hole.point_on_rim(start + direction * middle));
-                  (is_in ? inside : outside) = middle;
-                }
-              return hole.point_on_rim(start + direction * outside);
-            }
-      return a;
-    }
   } // namespace
 
 
@@ -298,7 +226,10 @@ namespace PeriDeal
   template <int dim>
   std::vector<Hole> Holes<dim>::all() const
   {
-    std::vector<Hole> list = listed;
+    std::vector<Hole> list;
+    for (const Hole &hole : listed)
+      if (!hole.text.empty()) // no joint
+        list.push_back(hole);
     if (!has_one || dim == 1)
       return list;
     Hole hole;
@@ -314,32 +245,6 @@ namespace PeriDeal
         }
     list.push_back(hole);
     return list;
-  }
-
-
-  template <int dim>
-  double Holes<dim>::rim_over_face(const Point<dim> &first, const Point<dim> &last) const
-  {
-    if constexpr (dim > 1)
-      {
-        const std::vector<Hole> holes = all();
-        if (holes.empty())
-          return 1.;
-        // In the plane of the holes a face is a line.
-        const Point<2>   a(first[0], first[1]), b(last[0], last[1]);
-        const double     length = a.distance(b), tiny = 1e-9 * length;
-        const PointOnRim from = nearest_on_rims(a, holes, tiny),
-                         to   = nearest_on_rims(b, holes, tiny);
-        if (!(length > 0.) || (a.distance(from.place) < tiny && b.distance(to.place) < tiny &&
-                               std::abs(from.hole->distance(a + 0.5 * (b - a))) < tiny))
-          return 1.;
-        if (from.hole == to.hole)
-          return from.hole->rim_between(from.place, to.place) / length;
-        const Point<2> joint = entry_from(from.place, *from.hole, *to.hole, 4. * length);
-        return (from.hole->rim_between(from.place, joint) + to.hole->rim_between(joint, to.place)) /
-               length;
-      }
-    return 1.;
   }
 
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Loads on round and turned holes of lattices are those of the true rim, not of the cells' stairs.
+"""Loads on round and turned holes of lattices are those of the true rim, not of the cells' stairs; thin holes are open all along.
 
     rims.py heat
+    rims.py thin    slits about a cell wide at an angle, stars, ellipses
 """
 
 import math
 
-from scene_test import BC, COUPLED, FE, PD, check_close, run_parts, run_scene, scene_text
+from scene_test import BC, COUPLED, FE, PD, check, check_close, run_parts, run_scene, scene_text
 
 ALL = f"{FE}, {PD}, {COUPLED}"
 
@@ -75,5 +76,51 @@ def heat():
                              BC + "Parts": "deep: hole if z < 0.7", BC + "Flux": "deep: 1"}, 1.4 * math.pi, side="deep", relative=6e-3)  # faces that a part cuts in 3D
 
 
+PULL = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = finite elements, peridynamics, coupled
+Domain/Cells = 24, 24
+Material/Young modulus = 1
+Material/Poisson ratio = 0.3
+Boundary conditions/Displacement = bottom: 0, 0 ; top: 0, 1e-3
+Coupling/Zone = everywhere
+Output/Fields = none
+""")
+
+
+def slit(length, width, degrees, center=(0, 0)):
+    """The text of a slit, and its perimeter."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    corners = [(0.5 * a * length, 0.5 * b * width) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    return "polygon: " + ", ".join(f"{center[0] + x * c - y * s:.16g}, {center[1] + x * s + y * c:.16g}" for x, y in corners), 2 * (length + width)
+
+
+def thin():
+    """What slits part carries nothing, and what enters is the flux times the length of the rim."""
+    across = {"Domain/Cells": "24, 24", BC + "Dirichlet": "bottom: 0; top: 1", BC + "Flux": "", "Coupling/Zone": "everywhere"}
+    for width in (0.2, 0.7, 1.2):  # cells
+        for degrees in (20, 45):
+            ranks = 2 if degrees == 20 else 1
+            run = run_scene(HEAT, {**across, "Domain/Holes": slit(20, width / 3, degrees, (0.1, 0.05))[0]}, ranks=ranks)
+            for model in run.summary["models"]:
+                check_close(run.model(model)["boundary flux"]["top"], 0, absolute=1e-9, what=f"{width} cells at {degrees} degrees, {model}: flow")
+            if width < 1:
+                check("is thin for the cells" in run.stdout + run.stderr, "a note on the slit")
+            flows(f"slit of {width} cells at {degrees} degrees", {"Domain/Holes": slit(3.1, width / 4, degrees, (0.1, 0.05))[0]}, slit(3.1, width / 4, degrees)[1], ranks=ranks)
+    run = run_scene(PULL, {"Domain/Holes": slit(2.5, 0.8 / 24, 30, (0.51, 0.47))[0]})
+    for model in run.summary["models"]:
+        check_close(run.total("force on top in y", model), 0, absolute=1e-12, what=f"{model}: force on what a slit parts")
+    star = [(r * math.cos(math.radians(18 + 36 * k)), r * math.sin(math.radians(18 + 36 * k))) for k, r in enumerate((2, 0.7) * 5)]
+    ellipse = [(2 * math.cos(t) * math.cos(0.5) - 0.1 * math.sin(t) * math.sin(0.5), 2 * math.cos(t) * math.sin(0.5) + 0.1 * math.sin(t) * math.cos(0.5)) for t in (2 * math.pi * k / 60 for k in range(60))]
+    for name, corners in (("star", star), ("thin ellipse", ellipse)):
+        perimeter = sum(math.dist(a, b) for a, b in zip(corners, corners[1:] + corners[:1]))
+        flows(name, {"Domain/Holes": "polygon: " + ", ".join(f"{x:.16g}, {y:.16g}" for x, y in corners)}, perimeter)
+    # A part on one side, which cuts the faces at the ends.
+    hole, perimeter = slit(3.1, 0.2, 20, (0.1, 0.05))
+    flows("one side of a slit", {"Domain/Holes": hole, BC + "Parts": f"above: hole if (y - 0.05)*{math.cos(math.radians(20))} - (x - 0.1)*{math.sin(math.radians(20))} > 0", BC + "Flux": "above: 1"},
+          0.5 * perimeter, side="above", relative=0.05)
+
+
 if __name__ == "__main__":
-    run_parts(heat)
+    run_parts(heat, thin)

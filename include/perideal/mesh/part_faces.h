@@ -5,10 +5,12 @@
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/point.h>
+#include <deal.II/grid/tria.h>
 
 #include <perideal/scene/boundary_conditions.h>
 
 #include <array>
+#include <map>
 #include <vector>
 
 namespace PeriDeal
@@ -24,14 +26,25 @@ namespace PeriDeal
     std::vector<double>             area;
   };
 
-  /** Holes::rim_over_face() of a face on a hole; 1 on other faces. */
-  template <int dim, typename Face>
-  double rim_over_face(const Holes<dim> &holes, const Face &face)
+  /** Holes::rim_over_faces() of faces on holes; 1 on other faces. */
+  template <int dim>
+  class RimFactors
   {
-    return face->boundary_id() != hole_boundary_id ?
-             1. :
-             holes.rim_over_face(face->vertex(0), face->vertex(face->n_vertices() - 1));
-  }
+  public:
+    /** @param mesh with the holes; no cell that touches one may be refined */
+    RimFactors(const Holes<dim> &holes, const dealii::Triangulation<dim> &mesh);
+
+    template <typename Face>
+    double operator()(const Face &face) const
+    {
+      const auto found = of_face.empty() ? of_face.end() :
+                                           of_face.find(static_cast<int>(face->index()));
+      return found == of_face.end() ? 1. : found->second;
+    }
+
+  private:
+    std::map<int, double> of_face;
+  };
 
   template <int dim>
   using CellVertices = std::array<dealii::Point<dim>, dealii::GeometryInfo<dim>::vertices_per_cell>;

@@ -5,7 +5,9 @@
 
 #include <deal.II/base/point.h>
 
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -13,7 +15,7 @@ namespace PeriDeal
   /** A hole in the plane of x and y, a circle or a polygon; in three dimensions a bore along z. */
   struct Hole
   {
-    std::string                   text;        // as the user wrote it
+    std::string                   text;        // as the user wrote it; none: see HoleCells
     dealii::Point<2>              center;      // of a circle
     double                        radius = 0.; // 0 for a polygon
     std::vector<dealii::Point<2>> corners;     // of a polygon
@@ -38,8 +40,36 @@ namespace PeriDeal
     /** At a place along the rim, which may go around more than once. */
     dealii::Point<2> point_on_rim(const double place) const;
 
-  private:
     double rim_length() const;
+  };
+
+  /** Cells of a lattice that are removed for a hole: those whose centre lies in it, and joints. */
+  struct HoleCells
+  {
+    std::size_t n_removed = 0;
+
+    /**
+     * Where a polygon is thin, cells whose centre lies in it may touch at corners only, or leave
+     * gaps. These cells, each a hole without a text, make them share faces from end to end.
+     */
+    std::vector<Hole> joints;
+  };
+
+  /**
+   * @param holes all of the body, without the joints of this one
+   * @param lower, upper corners of the lattice in the plane of the holes
+   */
+  HoleCells cells_of_hole(const Hole                        &hole,
+                          const std::vector<Hole>           &holes,
+                          const dealii::Point<2>            &lower,
+                          const dealii::Point<2>            &upper,
+                          const std::array<unsigned int, 2> &n_cells);
+
+  /** A face of a cell at a hole, in the plane of the holes. */
+  struct RimFace
+  {
+    dealii::Point<2>     begin, end;
+    dealii::Tensor<1, 2> outward; // into the hole, of length 1
   };
 
   /** A square hole has the radius as half its edge and is turned by the hole angle. */
@@ -73,12 +103,15 @@ namespace PeriDeal
      * A hole of a lattice has stairs in place of its rim. What of the true rim a face stands for,
      * over the area of the face: what acts on the rim acts by that. Faces around a hole have the
      * area of its rim together, without what of it lies in another hole; those on the rim have 1.
-     * @param first, last opposite corners of the face of a cell
+     * @param faces        all that the holes have
+     * @param lower, upper corners of the body in the plane of the holes
      */
-    double rim_over_face(const dealii::Point<dim> &first, const dealii::Point<dim> &last) const;
+    std::vector<double> rim_over_faces(const std::vector<RimFace> &faces,
+                                       const dealii::Point<2>     &lower,
+                                       const dealii::Point<2>     &upper) const;
 
   private:
-    /** All of them. */
+    /** All of them, without joints. */
     std::vector<Hole> all() const;
   };
 

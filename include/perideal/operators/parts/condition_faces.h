@@ -74,43 +74,6 @@ namespace PeriDeal
   };
 
 
-  /** The quadrature points of a whole face, whose area counts by a factor. */
-  template <int dim>
-  class FaceValues
-  {
-  public:
-    FaceValues(const dealii::FEFaceValues<dim> &values, const double factor)
-      : values(values)
-      , factor(factor)
-    {}
-
-    dealii::std_cxx20::ranges::iota_view<unsigned int, unsigned int> quadrature_point_indices()
-      const
-    {
-      return values.quadrature_point_indices();
-    }
-
-    const dealii::Point<dim> &quadrature_point(const unsigned int q) const
-    {
-      return values.quadrature_point(q);
-    }
-
-    double JxW(const unsigned int q) const
-    {
-      return factor * values.JxW(q);
-    }
-
-    double shape_value(const unsigned int i, const unsigned int q) const
-    {
-      return values.shape_value(i, q);
-    }
-
-  private:
-    const dealii::FEFaceValues<dim> &values;
-    const double                     factor;
-  };
-
-
   /**
    * Which conditions act on the faces of a finite element mesh, and on what of them. On stairs in
    * place of the rim of a hole areas are those of the rim.
@@ -125,23 +88,35 @@ namespace PeriDeal
     ConditionFaces(const dealii::DoFHandler<dim> &dofs, const BoundaryConditions<dim> &conditions)
       : conditions(conditions)
     {
-      const auto         &fe = dofs.get_fe();
-      std::vector<double> areas(conditions.parts.size(), 0.);
+      const auto           &fe = dofs.get_fe();
+      std::vector<double>   areas(conditions.parts.size(), 0.);
+      const RimFactors<dim> rim_over_face(conditions.holes, dofs.get_triangulation());
+      Part                  whole;
+      whole.inside = Expression(1.);
       for (const auto &cell : dofs.active_cell_iterators())
-        if (!conditions.parts.empty() && !cell->is_artificial() && cell->at_boundary())
+        if (!cell->is_artificial() && cell->at_boundary())
           for (const unsigned int f : cell->face_indices())
-            for (const Part &part : conditions.parts)
-              if (cell->face(f)->at_boundary() && part.side == cell->face(f)->boundary_id())
-                {
+            if (cell->face(f)->at_boundary())
+              {
+                const auto   id  = cell->face(f)->boundary_id();
+                const double rim = rim_over_face(cell->face(f));
+                const auto   add = [&](const Part &part, const auto of) {
                   PartValues<dim> values(
                     fe,
                     points_in_part<dim>(vertices_of<dim>(cell), f, part, fe.degree + 1));
-                  values.scale(rim_over_face(conditions.holes, cell->face(f)));
-                  for (const unsigned int q : values.quadrature_point_indices())
-                    areas[part.id - first_part_id] += values.JxW(q);
+                  values.scale(rim);
+                  if (of >= first_part_id)
+                    for (const unsigned int q : values.quadrature_point_indices())
+                      areas[of - first_part_id] += values.JxW(q);
                   if (!values.empty())
-                    on_faces.emplace(Key{cell->active_cell_index(), f, part.id}, std::move(values));
-                }
+                    on_faces.emplace(Key{cell->active_cell_index(), f, of}, std::move(values));
+                };
+                if (rim != 1.)
+                  add(whole, id);
+                for (const Part &part : conditions.parts)
+                  if (part.side == id)
+                    add(part, part.id);
+              }
       if (!conditions.parts.empty())
         require_areas(conditions, areas, dofs.get_communicator());
     }
@@ -160,20 +135,21 @@ namespace PeriDeal
     {
       const auto id = cell->face(f)->boundary_id();
       for (const Condition &condition : list)
-        if (condition.id == id)
+        if (conditions.side_of(condition.id) == id)
           {
-            whole.reinit(cell, f);
-            visit(condition,
-                  FaceValues<dim>(whole, rim_over_face(conditions.holes, cell->face(f))));
+            const auto found = on_faces.find({cell->active_cell_index(), f, condition.id});
+            if (found != on_faces.end())
+              visit(condition, found->second);
+            else if (condition.id == id)
+              {
+                whole.reinit(cell, f);
+                visit(condition, whole);
+              }
           }
-        else if (conditions.side_of(condition.id) == id && condition.id >= first_part_id)
-          if (const auto found = on_faces.find({cell->active_cell_index(), f, condition.id});
-              found != on_faces.end())
-            visit(condition, found->second);
     }
 
   private:
-    using Key = std::array<unsigned int, 3>; // cell, face, part
+    using Key = std::array<unsigned int, 3>; // cell, face, part or side
 
     const BoundaryConditions<dim> &conditions;
     std::map<Key, PartValues<dim>> on_faces;
