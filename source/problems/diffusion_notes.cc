@@ -456,6 +456,20 @@ namespace PeriDeal
   }
 
 
+  std::string note_on_divided_steps(const Stepper &stepper)
+  {
+    const StepperCost &cost = stepper.cost();
+    if (cost.divided == 0)
+      return {};
+    return (cost.divided == 1 ?
+              "one 'Time step' was divided, into " :
+              std::to_string(cost.divided) +
+                " steps of 'Time step' (section 'Time') were divided, into up to ") +
+           std::to_string(cost.most_parts) +
+           " parts, since the iterations for the material's dependence on the temperature did not converge in longer ones.";
+  }
+
+
 #define PERIDEAL_INSTANTIATE(dim)                                                            \
   template double missing_width<dim>(const std::vector<FamilyMember<dim>> &,                 \
                                      const unsigned int,                                     \

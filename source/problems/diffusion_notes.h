@@ -60,4 +60,7 @@ namespace PeriDeal
 
   /** Fixed steps that do not damp what they do not resolve. */
   std::string note_on_fast_waves(const Stepper &stepper, const double end_time);
+
+  /** Fixed steps that were divided, and into how many parts. */
+  std::string note_on_divided_steps(const Stepper &stepper);
 } // namespace PeriDeal

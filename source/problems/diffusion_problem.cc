@@ -390,21 +390,17 @@ namespace PeriDeal
   template <int dim>
   nlohmann::ordered_json DiffusionProblem<dim>::describe_solving() const
   {
-    if (!this->stepper)
+    if (!stepper)
       return {{"stepper", "steady"}, {"steps", 0}, {"iterations", steady_iterations}};
-    const Stepper         &stepping = *this->stepper;
-    nlohmann::ordered_json entry    = {{"stepper", stepping.name()},
-                                       {"steps", stepping.cost().steps},
-                                       {"rejected steps", stepping.cost().rejected},
-                                       {"iterations", stepping.cost().iterations}};
-    if (stepping.current_step() > 0.)
-      entry["time step"] = stepping.current_step();
-    const Spectrum    spectrum = op().spectrum();
-    const std::string method   = stepping.name() == "rk4" ? "rk4" : "euler";
-    entry["stable step"]       = {{"sharp", stable_step(method, spectrum.sharp)},
-                                  {"safe", stable_step(method, spectrum.safe)},
-                                  {"method", method}};
-    return entry;
+    return describe_stepping(*stepper, op().spectrum());
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::note_end(const RunContext &context) const
+  {
+    if (const std::string note = stepper ? note_on_divided_steps(*stepper) : ""; !note.empty())
+      context.record.notes.push_back(this->name() + ": " + note);
   }
 
 

@@ -61,6 +61,25 @@ namespace PeriDeal
   }
 
 
+  nlohmann::ordered_json describe_stepping(const Stepper &stepper, const Spectrum &spectrum)
+  {
+    const StepperCost &cost  = stepper.cost();
+    json               entry = {{"stepper", stepper.name()},
+                                {"steps", cost.steps},
+                                {"rejected steps", cost.rejected},
+                                {"iterations", cost.iterations}};
+    if (cost.divided > 0)
+      entry["divided steps"] = {{"number", cost.divided}, {"most parts", cost.most_parts}};
+    if (stepper.current_step() > 0.)
+      entry["time step"] = stepper.current_step();
+    const std::string method = stepper.name() == "rk4" ? "rk4" : "euler";
+    entry["stable step"]     = {{"sharp", stable_step(method, spectrum.sharp)},
+                                {"safe", stable_step(method, spectrum.safe)},
+                                {"method", method}};
+    return entry;
+  }
+
+
   template void describe_diffusion_scene(const Scene<1> &, nlohmann::ordered_json &);
   template void describe_diffusion_scene(const Scene<2> &, nlohmann::ordered_json &);
   template void describe_diffusion_scene(const Scene<3> &, nlohmann::ordered_json &);

@@ -54,7 +54,7 @@ namespace PeriDeal
       "auto",
       "time",
       "`auto` or a number; euler takes that very step. A step above the stability limit is "
-      "refused. Motion: `auto` is 0.8 of the limit of verlet, and 5 times that limit with newmark. Elastic equilibria under loads that depend on t: "
+      "refused; one of an implicit method whose iterations for T in `Material` do not converge is divided. Motion: `auto` is 0.8 of the limit of verlet, and 5 times that limit with newmark. Elastic equilibria under loads that depend on t: "
       "the step between two of them, `auto` is a hundredth of End time.");
     declare(
       "Tolerance",

@@ -14,6 +14,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <optional>
@@ -26,6 +27,8 @@ namespace PeriDeal
     mu::Parser parser;
     double     x = 0., y = 0., z = 0., t = 0., T = 0.;
     bool       uses_time = false, uses_position = false, uses_temperature = false;
+
+    std::vector<double> marks; // marked_temperatures()
 
     std::function<double(const dealii::Point<3> &, const double)> function; // else the parser
 
@@ -122,6 +125,29 @@ namespace PeriDeal
     bool is_name_start(const char c)
     {
       return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
+    }
+
+
+    /** Numbers of a formula, a and b one after the other: 0, +-a, +-a+-b, and all middles. */
+    std::vector<double> marks_of(const std::string &formula)
+    {
+      std::vector<double> places{0.}, marks;
+      double              last = 0.;
+      for (const char *c = formula.c_str(); *(c += std::strcspn(c, "0123456789.")) != '\0';)
+        {
+          char        *end    = nullptr;
+          const double number = std::strtod(c, &end);
+          for (const double a : {-number, number})
+            places.insert(places.end(), {a - last, a, a + last});
+          last = number;
+          c    = std::max<const char *>(end, c + 1); // past a dot alone
+        }
+      std::sort(places.begin(), places.end());
+      for (const double place : places)
+        if (marks.empty() || place > marks.back())
+          marks.insert(marks.end(),
+                       {0.5 * ((marks.empty() ? place : marks.back()) + place), place});
+      return marks;
     }
 
 
@@ -332,6 +358,8 @@ namespace PeriDeal
       entry_error(where,
                   "the formula '" + formula + "' gives " + std::to_string(n_results) +
                     " values, needs one (is a comma outside parentheses?).");
+    if (compiled->uses_temperature)
+      compiled->marks = marks_of(formula);
     if (!compiled->uses_time && !compiled->uses_position && !compiled->uses_temperature)
       {
         compiled.reset();
@@ -399,6 +427,13 @@ namespace PeriDeal
   bool Expression::depends_on_temperature() const
   {
     return compiled != nullptr && compiled->uses_temperature;
+  }
+
+
+  const std::vector<double> &Expression::marked_temperatures() const
+  {
+    static const std::vector<double> none;
+    return compiled == nullptr ? none : compiled->marks;
   }
 
 

@@ -228,7 +228,15 @@ namespace PeriDeal
   template <int dim>
   double MaterialProperty::value(const dealii::Point<dim> &p, const double temperature) const
   {
-    return formula(regions == nullptr ? -1 : regions->at(p)).value(p, 0., temperature);
+    return formula_at(p).value(p, 0., temperature);
+  }
+
+
+  template <int dim>
+  const std::vector<double> &MaterialProperty::marked_temperatures(
+    const dealii::Point<dim> &p) const
+  {
+    return formula_at(p).marked_temperatures();
   }
 
 
@@ -435,10 +443,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                          \
-  template bool   Region::contains<dim>(const dealii::Point<dim> &) const; \
-  template int    Regions::at<dim>(const dealii::Point<dim> &) const;      \
-  template double MaterialProperty::value<dim>(const dealii::Point<dim> &, const double) const;
+#define PERIDEAL_INSTANTIATE(dim)                                                               \
+  template bool   Region::contains<dim>(const dealii::Point<dim> &) const;                      \
+  template int    Regions::at<dim>(const dealii::Point<dim> &) const;                           \
+  template double MaterialProperty::value<dim>(const dealii::Point<dim> &, const double) const; \
+  template const std::vector<double> &MaterialProperty::marked_temperatures<dim>(               \
+    const dealii::Point<dim> &) const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -59,7 +59,8 @@ namespace PeriDeal
     protected:
       int step(const Vector &u, const double t, const double h) override
       {
-        if (n_known < 1)
+        // Fixed steps may grow at once: after a span whose steps were shorter, or divided.
+        if (n_known < 1 || (fixed && h > (1. + std::sqrt(2.)) * h_previous))
           {
             sdirk2(u, t, h, k1, k2);
             const double gamma = 1. - std::sqrt(0.5);

@@ -44,6 +44,7 @@ namespace PeriDeal
     Trip                   watch_totals(const double t) const override;
     void                   explain(Trip &trip) override;
     void                   add_totals(const double t, const RunContext &context) override;
+    void                   note_end(const RunContext &context) const override;
     nlohmann::ordered_json describe_solving() const override;
     void describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const override;
     Difference               error(const ExactSolution &exact, const double t) const override;

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -60,6 +61,13 @@ namespace PeriDeal
     bool depends_on_position() const;
 
     bool depends_on_temperature() const;
+
+    /**
+     * Where to look for jumps and peaks, ascending: its numbers, with both signs, sums and
+     * differences of two that follow each other in the text, and the middles in between. Empty
+     * without T.
+     */
+    const std::vector<double> &marked_temperatures() const;
 
     const std::string &text() const;
 

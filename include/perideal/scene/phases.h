@@ -123,6 +123,10 @@ namespace PeriDeal
     template <int dim>
     double value(const dealii::Point<dim> &p, const double temperature = 0.) const;
 
+    /** Expression::marked_temperatures() of the formula at a point. */
+    template <int dim>
+    const std::vector<double> &marked_temperatures(const dealii::Point<dim> &p) const;
+
     /** One number in the whole body. */
     bool is_constant() const;
 
@@ -133,6 +137,12 @@ namespace PeriDeal
     const Expression &formula(const int region) const;
 
   private:
+    template <int dim>
+    const Expression &formula_at(const dealii::Point<dim> &p) const
+    {
+      return formula(regions == nullptr ? -1 : regions->at(p));
+    }
+
     Expression                             elsewhere{1.};
     std::shared_ptr<const Regions>         regions; // null: one formula everywhere
     std::vector<std::optional<Expression>> of_regions;

@@ -7,6 +7,7 @@
 #include <perideal/solvers/findings.h>
 #include <perideal/solvers/step_span.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,12 +28,15 @@ namespace PeriDeal
   struct StepperCost
   {
     unsigned long long steps = 0, rejected = 0, iterations = 0;
+    unsigned long long divided = 0, most_parts = 0; // given steps, and what one of them came to
 
     void exchange(Archive &archive)
     {
       archive.exchange("steps", steps);
       archive.exchange("rejected", rejected);
       archive.exchange("iterations", iterations);
+      archive.exchange("divided", divided);
+      archive.exchange("most parts", most_parts);
     }
   };
 
@@ -145,6 +149,8 @@ namespace PeriDeal
       spent.steps += before.steps;
       spent.rejected += before.rejected;
       spent.iterations += before.iterations;
+      spent.divided += before.divided;
+      spent.most_parts = std::max(spent.most_parts, before.most_parts);
       heat_entered += entered_before;
     }
 
