@@ -32,7 +32,7 @@ namespace PeriDeal
         return q;
       }
 
-      /** What strains along the axes store, twice, as a quadratic form; q: by which the law divides. */
+      /** What strains along the axes store, twice, as a quadratic form; the law divides by q. */
       Tensor<2, dim> energy(const StateLaw &law, const double q) const
       {
         Tensor<1, dim> theta;
