@@ -24,7 +24,7 @@ class Units:
         """counts: 'wetness' where flows of moisture are wetness times volume, else they are masses."""
         named = {key: str(value) for key, value in (named or {}).items() if value}
         self.length, self.time = named.get("length", ""), named.get("time", "")
-        self.dimension, self.physics, self.named = dimension, physics, named
+        self.dimension, self.physics, self.named, self.counts = dimension, physics, named, counts
         force = named.get("force", "") if physics == "elasticity" else ""
         self.stress = PRESSURES.get((force, self.length), over(force, self.length and f"{self.length}²"))
         self.intensity = f"{self.stress} √{self.length}" if self.stress and self.length else ""
@@ -114,8 +114,10 @@ class Units:
                     "Fracture energy": {"N/m": "J/m²", "kN/m": "kJ/m²"}.get(self.toughness, self.toughness)}.get(entry, "")
         if self.physics == "moisture":
             diffusivity = over(length and f"{length}²", time)
-            return {"Conductivity": diffusivity, "Diffusivity": diffusivity,
-                    "Saturated concentration": over(self.named.get("mass", ""), volume)}.get(entry, "")
+            mass = self.named.get("mass", "")
+            of_mass = over(mass, f"({length} {time})" if length and time else "")
+            return {"Conductivity": of_mass if self.counts == "mass" else diffusivity, "Diffusivity": diffusivity,
+                    "Saturated concentration": over(mass, volume)}.get(entry, "")
         field = self.named.get("field", "")
         field = {"C": "K", "degC": "K", "F": "°F"}.get(field, field)
         amount, rate = self.amounts(self.named, "")

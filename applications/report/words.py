@@ -153,7 +153,7 @@ class Words:
     @property
     def effective(self):
         """What the body conducts as a whole is called."""
-        return "effective diffusivity" if self.quantity == "moisture" else "effective conductivity"
+        return "effective conductivity" if self.quantity != "moisture" or self.units.counts == "mass" else "effective diffusivity"
 
     @property
     def passing(self):

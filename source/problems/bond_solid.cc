@@ -276,6 +276,7 @@ namespace PeriDeal
             number_text(states->bonds().rows.moments_gap) + " of them.");
         const auto &family = states->bonds().families.weights().members();
         for (const std::string &note : {note_on_few_bonds(scene, family),
+                                        note_on_bending(scene),
                                         states->brittle() ? note_on_trapping(scene, family) : "",
                                         note_on_critical_stretch()})
           if (!note.empty())
@@ -344,13 +345,15 @@ namespace PeriDeal
         std::string      axes;
         for (unsigned int d = 0; d < dim; ++d)
           if (std::abs(stiffer[d]) > tolerable)
-            axes += (axes.empty() ? "" : ", ") + number_text(std::round(1000. * stiffer[d]) / 10.) +
-                    " % along " + std::string(1, "xyz"[d]);
+            axes += std::string(axes.empty() ? "" : ", ") +
+                    (stiffer[d] > 0. ? "stiffer" : "softer") + " by about " +
+                    number_text(std::round(1000. * std::abs(stiffer[d])) / 10.) + " % along " +
+                    std::string(1, "xyz"[d]);
         if (axes.empty())
           return {};
-        return "Families of peridynamics that end at surfaces make this body stiffer than its Young's modulus: "
-               "if it is stretched as a whole, by about " +
-               axes + " (mean over its nodes); waves are faster by half of that.";
+        return "Families of peridynamics that end at surfaces make this body, if it is stretched as a whole, " +
+               axes +
+               " than its Young's modulus (mean over its nodes); the speed of waves changes by half of that.";
       }
 
       const DoFHandler<dim>              &handler;

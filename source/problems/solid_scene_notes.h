@@ -38,10 +38,17 @@ namespace PeriDeal
   template <int dim>
   void note_slow_oblique_cracks(const Scene<dim> &scene, std::vector<std::string> &notes);
 
-  /** The stiffness of a lattice whose families have few bonds. */
+  /** The stiffness of a lattice whose families have few bonds, or oblong cells. */
   template <int dim>
   std::string note_on_few_bonds(const Scene<dim>                     &scene,
                                 const std::vector<FamilyMember<dim>> &family);
+
+  /**
+   * By how much families that go on beyond the sides of a thin body make it too stiff where it is
+   * bent, or twisted: for `Models = peridynamics`.
+   */
+  template <int dim>
+  std::string note_on_bending(const Scene<dim> &scene);
 
   /** Cracks that are held back between two rows of nodes. */
   template <int dim>

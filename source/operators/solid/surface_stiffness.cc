@@ -23,17 +23,22 @@ namespace PeriDeal
             sums[a][b] += weight * xi[a] * xi[a] * xi[b] * xi[b] / r2 / r2;
       }
 
-      /** What strains along the axes store, twice, as a quadratic form. */
-      Tensor<2, dim> energy(const StateLaw &law) const
+      double weighted() const
       {
-        double         q = 0.;
+        double q = 0.;
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = 0; b < dim; ++b)
+            q += sums[a][b];
+        return q;
+      }
+
+      /** What strains along the axes store, twice, as a quadratic form; the law divides by q. */
+      Tensor<2, dim> energy(const StateLaw &law, const double q) const
+      {
         Tensor<1, dim> theta;
         for (unsigned int a = 0; a < dim; ++a)
           for (unsigned int b = 0; b < dim; ++b)
-            {
-              q += sums[a][b];
-              theta[a] += sums[a][b];
-            }
+            theta[a] += sums[a][b];
         theta *= law.dilatation / q;
         return law.volumetric / law.dilatation * outer_product(theta, theta) +
                law.extension / q * sums;
@@ -80,8 +85,9 @@ namespace PeriDeal
         StateLaw law = laws[i];
         if (!laws.volumetric)
           law.volumetric = 0.;
-        found += nodes.volume(i) * own.energy(law);
-        expected += nodes.volume(i) * complete.energy(law);
+        found +=
+          nodes.volume(i) * own.energy(law, nodes.volume(i) * laws.weighted.local_element(i));
+        expected += nodes.volume(i) * complete.energy(law, complete.weighted());
       }
     found    = Utilities::MPI::sum(found, nodes.communicator());
     expected = Utilities::MPI::sum(expected, nodes.communicator());
