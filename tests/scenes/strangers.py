@@ -138,9 +138,9 @@ def contact():
         area = 0.04 if name == "3D" else 0.25
         for model in run.summary["models"]:
             table.add(f"{name}, {model}", abs(run.model(model)["boundary flux"]["right"]) / area, 1 / 1.1, relative=1e-6)
-    for cells in (0.1, 0.99):
+    for cells, pairs in ((0.1, ((5, 1), (1, 5), (1.3, 1))), (0.99, ((5, 1), (1, 5)))):
         x = (20 + cells) / 41
-        for left, right in ((5, 1), (1, 5)):
+        for left, right in pairs:
             run = run_scene(WALL, {"Material/Phases/Regions": f"left half: {x} - x", "Cracks/Segments": f"{x},-1 ; {x},2",
                                    "Material/Conductivity": right, "Material/Phases/Conductivity": f"left half: {left}"})
             check("materials meet" not in run.stdout, f"{cells} cells beside a face: a note on mixed cells where a crack parts the materials")

@@ -61,7 +61,8 @@ namespace PeriDeal
     /**
      * The smallest and the largest at the Gauss points of a cell, and where a crack parts its
      * corners also just inside of these: materials that meet at the crack between Gauss points and
-     * a side of the cell are two in it.
+     * a side of the cell are two in it. Where there are two constant ones the largest is infinite,
+     * so that no bond passes, however close they are.
      * @param temperatures of the corners; null: those at first
      */
     Range range(const CellCorners<dim> &corners, const CornerValues *const temperatures) const;
@@ -86,7 +87,7 @@ namespace PeriDeal
         }
       return list;
     }();
-    const bool parted = std::any_of(cracks.begin(), cracks.end(), [&](const auto &crack) {
+    const bool          parted = std::any_of(cracks.begin(), cracks.end(), [&](const auto &crack) {
       bool parts = false;
       if (crack.is_near(corners[0], corners[0].distance(corners[n_corners - 1])))
         for (unsigned int a = 0; a < n_corners; ++a)
@@ -94,8 +95,8 @@ namespace PeriDeal
             parts = parts || crack.separates(corners[a], corners[b]);
       return parts;
     });
-    Range range;
-    for (unsigned int q = 0; q < (parted ? 2 : 1) * n_corners; ++q)
+    std::vector<double> found((parted ? 2 : 1) * n_corners);
+    for (unsigned int q = 0; q < found.size(); ++q)
       {
         const CornerValues &shape = shapes[q];
         dealii::Point<dim>  p;
@@ -106,10 +107,15 @@ namespace PeriDeal
             if (temperatures != nullptr)
               T += shape[v] * (*temperatures)[v];
           }
-        const double k = temperatures != nullptr ? at(p, T) : at_first(p);
-        range.lowest   = std::min(range.lowest, k);
-        range.highest  = std::max(range.highest, k);
+        found[q] = temperatures != nullptr ? at(p, T) : at_first(p);
       }
+    const double lowest  = *std::min_element(found.begin(), found.end()),
+                 highest = *std::max_element(found.begin(), found.end());
+    Range range{lowest, highest};
+    if (parted && lowest < highest && std::all_of(found.begin(), found.end(), [&](const double k) {
+          return k == lowest || k == highest;
+        }))
+      range.highest = std::numeric_limits<double>::infinity();
     return range;
   }
 } // namespace PeriDeal
