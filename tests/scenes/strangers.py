@@ -284,11 +284,13 @@ def two_materials(path, xs, ys, at, moved=0.0, n_named=None):
     return write_file(path, text.replace("$Nodes", named + "$Nodes", 1))
 
 
-def bricks(path):
-    """The same in 3D: 8 x 3 x 3 cells, the left half "steel"; the plane between is "glue"."""
+def bricks(path, moved=0.0):
+    """The same in 3D: 8 x 3 x 3 cells, the left half "steel"; the plane between is "glue". moved: of inner nodes, within that plane if they are on it."""
     n, m = 9, 4
     number = lambda i, j, k: 1 + i + n * (j + m * k)
-    nodes = [f"{i / 8!r} {j / 12!r} {k / 12!r}" for k in range(m) for j in range(m) for i in range(n)]
+    place = lambda i, j, k, d, size: size * (moved * np.sin(7 * i + 3 * j + 5 * k + 2 * d) if 0 < i < 8 and 0 < j < 3 and 0 < k < 3 and (d > 0 or i != 4) else 0)
+    nodes = [" ".join(repr(float(p + place(i, j, k, d, size))) for d, (p, size) in enumerate(((i / 8, 1 / 8), (j / 12, 1 / 12), (k / 12, 1 / 12))))
+             for k in range(m) for j in range(m) for i in range(n)]
     square = lambda i, j, k: " ".join(str(number(i, *c)) for c in ((j, k), (j + 1, k), (j + 1, k + 1), (j, k + 1)))
     elements = [f"3 2 {side} {side} {square(i, j, k)}" for side, i in ((1, 0), (2, n - 1), (5, 4)) for j in range(3) for k in range(3)]
     for k in range(3):
@@ -350,10 +352,15 @@ def interfaces():
     for model in closed.summary["models"]:
         check(flow(closed, model) < 1e-9, f"{model}: nothing passes an insulated interface: {flow(closed, model)}")
         check_close(closed.probe(model, (0.9, 0.1)), 1, absolute=1e-8, what=f"{model}: behind it")
-    part = run_scene(NAMED, {"Dimension": "3", "Domain/Mesh file": bricks("bricks.msh"), "Peridynamics/Horizon": "0.3", "Cracks/Interfaces": "glue",
-                             BC + "Dirichlet": "left: 0 ; right: 1"})
-    for model in part.summary["models"]:
-        table.add(f"3D, {model}", flow(part, model, "right") * 16, 1 / 1.1, relative=1e-8 if model == FE else 1e-6)
+    for name, moved in (("3D", 0), ("3D, distorted", 0.1)):
+        on_mesh = {"Dimension": "3", "Domain/Mesh file": bricks("bricks.msh", moved), "Peridynamics/Horizon": "0.3", "Cracks/Interfaces": "glue",
+                   BC + "Dirichlet": "left: 0 ; right: 1"}
+        part = run_scene(NAMED, on_mesh)
+        for model in part.summary["models"]:
+            table.add(f"{name}, {model}", flow(part, model, "right") * 16, 1 / 1.1, relative=1e-8 if model == FE else 1e-6)
+    closed = run_scene(NAMED, {**on_mesh, "Cracks/Contact conductance": ""}, ranks=2)
+    for model in closed.summary["models"]:
+        check(flow(closed, model, "right") < 1e-9, f"3D, distorted, {model}: nothing passes an insulated interface: {flow(closed, model, 'right')}")
     exact = 0.5 * np.pi / (np.log(2) / 5 + 1 / (2 * 2) + np.log(1.5))
     run = run_scene(NAMED, {"Domain/Mesh file": ring("ring.msh", 32, 32), "Peridynamics/Horizon": "0.25", "Cracks/Interfaces": "glue",
                             "Material/Phases/Regions": "metal: mesh(core)", BC + "Dirichlet": "inner: 0 ; outer: 1"})
