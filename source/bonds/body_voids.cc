@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -247,10 +249,11 @@ namespace PeriDeal
         , tiny(1e-7 * nodes.smallest_spacing())
         , bins(reach)
       {
-        for (const Facet &facet : gather_boundary_facets(nodes))
+        for (const Facet &facet : gather_boundary_facets(nodes.dof_handler()))
           if (facet.side != crack_boundary_id)
             facets.push_back(facet);
         bins = bins_of_facets<dim>(facets, reach);
+        rims = find_rims();
         for (unsigned int i = 0; i < nodes.n_local(); ++i)
           close.push_back(has_facet_ahead(i));
       }
@@ -262,10 +265,10 @@ namespace PeriDeal
 
       bool between(const unsigned int node, const unsigned int neighbor) const override
       {
-        if (!close[node] || !close[neighbor])
+        if (!close[node] && !close[neighbor])
           return false;
         // From one end, whichever is asked for, so that both directions agree to the last digit.
-        const Point<dim> a = nodes.position(node), b = nodes.position(neighbor);
+        const Point<dim> a = nodes.crack_point(node), b = nodes.crack_point(neighbor);
         for (unsigned int d = 0; d < dim; ++d)
           if (a[d] != b[d])
             return a[d] < b[d] ? leaves(a, b) : leaves(b, a);
@@ -316,38 +319,68 @@ namespace PeriDeal
       bool leaves(const Point<dim> &a, const Point<dim> &b) const
       {
         // Where the way meets the boundary; what lies between two such places is inside or not.
-        std::vector<double> places;
-        bins.visit_near(a, [&](const unsigned int f) {
+        std::vector<std::pair<double, unsigned int>> places; // and the facets there
+        bins.visit_near(a + 0.5 * (b - a), [&](const unsigned int f) {
           const double from = height_above(facets[f], a), to = height_above(facets[f], b);
           if ((from <= tiny && to <= tiny) || (from > tiny && to > tiny))
             return;
           const double s = std::clamp(from / (from - to), 0., 1.);
-          if (distance_to(facets[f], Point<dim>(a + s * (b - a))) < tiny) // its rim belongs to it
-            places.push_back(s);
+          // Its rim belongs to it; the ends of the way may be crack points.
+          if (distance_to(facets[f], Point<dim>(a + s * (b - a))) < 20. * tiny)
+            places.emplace_back(s, f);
         });
         if (places.empty())
           return false;
-        places.push_back(0.);
-        places.push_back(1.);
+        // Pieces of the body that touch have two faces at one place, or nearly so where these are
+        // not plane.
+        const double length = a.distance(b), near = 0.1 * nodes.smallest_spacing();
+        for (std::size_t k = 0; k < places.size(); ++k)
+          for (std::size_t l = 0; l < k; ++l)
+            if (facets[places[k].second].normal * facets[places[l].second].normal < -0.9 &&
+                std::abs(places[k].first - places[l].first) * length < near)
+              return true;
         std::sort(places.begin(), places.end());
+        places.insert(places.begin(), {0., places.front().second});
+        places.emplace_back(1., places.back().second);
         // A way along a rim that curves away leaves the body by little: that is a chord of it.
         constexpr double slack = 1e-6, chord = 0.12;
-        const double     length = a.distance(b);
         for (std::size_t k = 1; k < places.size(); ++k)
-          if (const double part = places[k] - places[k - 1]; part > slack)
+          if (const double part = places[k].first - places[k - 1].first; part > slack)
             {
-              const Point<dim> middle(a + 0.5 * (places[k] + places[k - 1]) * (b - a));
-              if (depth(middle) > std::max(2. * tiny, chord * part * length))
+              const bool   is_chord = rims[places[k].second] == rims[places[k - 1].second];
+              const double middle   = 0.5 * (places[k].first + places[k - 1].first);
+              if (depth(a + middle * (b - a)) >
+                  std::max(2. * tiny, is_chord ? chord * part * length : 0.))
                 return true;
             }
         return false;
       }
 
-      const Nodes<dim>  &nodes;
-      const double       reach, tiny;
-      std::vector<Facet> facets;
-      PointBins<dim>     bins;
-      std::vector<bool>  close; // of the nodes known here: a facet is within the reach
+      /** Numbers of the parts of the boundary that hang together, by facet. */
+      std::vector<std::size_t> find_rims() const
+      {
+        std::vector<std::size_t> of(facets.size());
+        std::iota(of.begin(), of.end(), 0);
+        const auto first = [&](std::size_t f) {
+          while (of[f] != f)
+            f = of[f] = of[of[f]];
+          return f;
+        };
+        std::map<types::global_dof_index, std::size_t> at_node;
+        for (std::size_t f = 0; f < facets.size(); ++f)
+          for (const auto node : facets[f].nodes)
+            of[first(f)] = first(at_node.try_emplace(node, f).first->second);
+        for (std::size_t f = 0; f < facets.size(); ++f)
+          of[f] = first(f);
+        return of;
+      }
+
+      const Nodes<dim>        &nodes;
+      const double             reach, tiny;
+      std::vector<Facet>       facets;
+      PointBins<dim>           bins;
+      std::vector<std::size_t> rims;  // of the facets
+      std::vector<bool>        close; // of the nodes known here: a facet is within the reach
     };
   } // namespace
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/mpi.h>
-
-#include <perideal/base/user_error.h>
 #include <perideal/bonds/boundary_facets.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace PeriDeal
 {
@@ -16,158 +14,9 @@ namespace PeriDeal
 
   namespace
   {
-    constexpr double alike = 0.8; // cosine of the angle between normals of one side
-
-    /** The normal of a segment or triangle, as long as this is large. */
-    Tensor<1, 2> area_vector(const std::array<Point<2>, 2> &corners)
-    {
-      const Tensor<1, 2> along = corners[1] - corners[0];
-      return Point<2>(along[1], -along[0]);
-    }
-
-    Tensor<1, 3> area_vector(const std::array<Point<3>, 3> &corners)
-    {
-      return 0.5 * cross_product_3d(corners[1] - corners[0], corners[2] - corners[0]);
-    }
-
-
-    template <int dim>
-    double part_along(const Point<dim> &p, const Point<dim> &a, const Point<dim> &b)
-    {
-      return std::clamp(((p - a) * (b - a)) / (b - a).norm_square(), 0., 1.);
-    }
-
-    /** Weights of the corners in the point of a segment or triangle that is nearest to p. */
-    std::array<double, 2> weights_of_nearest(const Point<2>                &p,
-                                             const std::array<Point<2>, 2> &corners)
-    {
-      const double t = part_along(p, corners[0], corners[1]);
-      return {1. - t, t};
-    }
-
-    std::array<double, 3> weights_of_nearest(const Point<3>                &p,
-                                             const std::array<Point<3>, 3> &corners)
-    {
-      const Tensor<1, 3>    normal = area_vector(corners);
-      const double          square = 2. * normal.norm_square();
-      std::array<double, 3> weights;
-      bool                  inside = true;
-      for (unsigned int k = 0; k < 3; ++k)
-        {
-          const Point<3> &a = corners[(k + 1) % 3], &b = corners[(k + 2) % 3];
-          weights[k] = (cross_product_3d(b - a, p - a) * normal) / square;
-          inside     = inside && weights[k] >= 0.;
-        }
-      if (inside)
-        return weights;
-      double smallest = std::numeric_limits<double>::max();
-      for (unsigned int k = 0; k < 3; ++k)
-        {
-          const Point<3> &a = corners[k], &b = corners[(k + 1) % 3];
-          const double    t      = part_along(p, a, b);
-          const double    square = (a + t * (b - a) - p).norm_square();
-          if (square < smallest)
-            {
-              smallest             = square;
-              weights              = {};
-              weights[k]           = 1. - t;
-              weights[(k + 1) % 3] = t;
-            }
-        }
-      return weights;
-    }
-
-
-    /** The corners of the segment or triangles that a face of a cell consists of. */
-    template <int dim>
-    const std::vector<std::array<unsigned int, dim>> &pieces_of_face()
-    {
-      static const std::vector<std::array<unsigned int, dim>> pieces = [] {
-        std::vector<std::array<unsigned int, dim>> list;
-        if constexpr (dim == 2)
-          list = {{0, 1}};
-        else
-          list = {{0, 1, 2}, {1, 3, 2}};
-        return list;
-      }();
-      return pieces;
-    }
+    /** Cosine of the angle between normals of one side. */
+    constexpr double alike = 0.8;
   } // namespace
-
-
-  template <int dim>
-  std::array<double, dim> BoundaryFacet<dim>::nearest_weights(const Point<dim> &p) const
-  {
-    return weights_of_nearest(p, corners);
-  }
-
-  template <int dim>
-  Point<dim> BoundaryFacet<dim>::at(const std::array<double, dim> &weights) const
-  {
-    Point<dim> point;
-    for (unsigned int k = 0; k < dim; ++k)
-      point += weights[k] * corners[k];
-    return point;
-  }
-
-
-  template <int dim>
-  std::vector<BoundaryFacet<dim>> gather_boundary_facets(const Nodes<dim> &nodes)
-  {
-    const bool          on_vertices = nodes.dof_handler().get_fe().n_dofs_per_vertex() > 0;
-    std::vector<double> numbers; // global indices are exact up to 2^53
-    for (const auto &cell : nodes.dof_handler().active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            for (std::array<unsigned int, dim> piece : pieces_of_face<dim>())
-              {
-                const auto                  face = cell->face(f);
-                std::array<Point<dim>, dim> corners;
-                for (unsigned int k = 0; k < dim; ++k)
-                  corners[k] = face->vertex(piece[k]);
-                if (area_vector(corners) * (face->center() - cell->center()) < 0.)
-                  {
-                    std::swap(corners[0], corners[1]);
-                    std::swap(piece[0], piece[1]);
-                  }
-                numbers.push_back(face->boundary_id());
-                for (unsigned int k = 0; k < dim; ++k)
-                  {
-                    numbers.push_back(on_vertices ? face->vertex_dof_index(piece[k], 0) : 0);
-                    for (unsigned int d = 0; d < dim; ++d)
-                      numbers.push_back(corners[k][d]);
-                  }
-              }
-    std::vector<BoundaryFacet<dim>> facets;
-    for (const auto &list : Utilities::MPI::all_gather(nodes.communicator(), numbers))
-      for (std::size_t n = 0; n < list.size();)
-        {
-          BoundaryFacet<dim> facet;
-          facet.side = static_cast<types::boundary_id>(list[n++]);
-          for (unsigned int k = 0; k < dim; ++k)
-            {
-              facet.nodes[k] = static_cast<types::global_dof_index>(list[n++]);
-              for (unsigned int d = 0; d < dim; ++d)
-                facet.corners[k][d] = list[n++];
-            }
-          facet.normal = area_vector(facet.corners);
-          facet.area   = facet.normal.norm();
-          if (facet.area > 0.)
-            {
-              facet.normal /= facet.area;
-              facets.push_back(facet);
-            }
-        }
-    std::sort(facets.begin(), facets.end(), [](const auto &a, const auto &b) {
-      for (unsigned int k = 0; k < dim; ++k)
-        for (unsigned int d = 0; d < dim; ++d)
-          if (a.corners[k][d] != b.corners[k][d])
-            return a.corners[k][d] < b.corners[k][d];
-      return false;
-    });
-    return facets;
-  }
 
 
   template <int dim>
@@ -178,7 +27,7 @@ namespace PeriDeal
     : reach(reach)
     , bins(reach)
   {
-    for (const BoundaryFacet<dim> &facet : gather_boundary_facets(nodes))
+    for (const BoundaryFacet<dim> &facet : gather_boundary_facets(nodes.dof_handler()))
       facets.push_back({facet, goes_on(facet.side), {}});
     take_out_planes(symmetry);
     bins = bins_of_facets<dim>(facets, reach);
@@ -306,20 +155,31 @@ namespace PeriDeal
 
   template <int dim>
   std::vector<typename BoundaryFacets<dim>::Foot> BoundaryFacets<dim>::feet(
-    const Point<dim> &p) const
+    const Point<dim>             &p,
+    const types::global_dof_index node,
+    const Tensor<1, dim>         &inwards) const
   {
     std::vector<Foot> all, result;
+    const double      slack = 1e-9 * reach;
     bins.visit_near(p, [&](const unsigned int f) {
       if (!facets[f].goes_on)
         return;
       const Foot foot = foot_on(p, f);
-      if (foot.distance <= reach && is_lowest(p, foot))
+      if (foot.distance <= reach && is_lowest(p, foot) &&
+          (foot.distance > slack || ends_at(f, node)))
         all.push_back(foot);
     });
-    const double slack = 1e-9 * reach;
-    std::sort(all.begin(), all.end(), [slack](const Foot &a, const Foot &b) {
-      const long at_a = std::lround(a.distance / slack), at_b = std::lround(b.distance / slack);
-      return at_a != at_b ? at_a < at_b : a.facet < b.facet;
+    // Where two pieces of the body touch at the foot, on the node's own one: from well inside it is
+    // nearer.
+    const Point<dim> inside = p + 1e5 * inwards;
+    std::sort(all.begin(), all.end(), [&](const Foot &a, const Foot &b) {
+      const auto key = [&](const Foot &foot) {
+        const double other = inwards.norm_square() > 0. ? foot_on(inside, foot.facet).distance : 0.;
+        return std::make_tuple(std::lround(foot.distance / slack),
+                               std::lround(other / slack),
+                               foot.facet);
+      };
+      return key(a) < key(b);
     });
     for (const Foot &foot : all)
       if (std::none_of(result.begin(), result.end(), [&](const Foot &other) {
@@ -339,13 +199,23 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<typename BoundaryFacets<dim>::Foot> BoundaryFacets<dim>::at(const Point<dim> &p) const
+  bool BoundaryFacets<dim>::ends_at(const unsigned int            facet,
+                                    const types::global_dof_index node) const
+  {
+    const auto &own = facets[facet].nodes;
+    return std::find(own.begin(), own.end(), node) != own.end();
+  }
+
+
+  template <int dim>
+  std::vector<typename BoundaryFacets<dim>::Foot> BoundaryFacets<dim>::at(
+    const Point<dim>             &p,
+    const types::global_dof_index node) const
   {
     std::vector<Foot> all, result;
     bins.visit_near(p, [&](const unsigned int f) {
-      const Foot foot = foot_on(p, f);
-      if (foot.distance < 1e-9 * reach)
-        all.push_back(foot);
+      if (ends_at(f, node))
+        all.push_back(foot_on(p, f));
     });
     std::sort(all.begin(), all.end(), [](const Foot &a, const Foot &b) {
       return a.facet < b.facet;
@@ -360,22 +230,24 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool BoundaryFacets<dim>::nearest(const Point<dim>     &p,
-                                    const Tensor<1, dim> &normal,
-                                    Foot                 &foot) const
+  typename BoundaryFacets<dim>::Foot BoundaryFacets<dim>::nearest(const Point<dim>  &p,
+                                                                  const unsigned int facet) const
   {
-    bool         any   = false;
-    const double slack = 1e-9 * reach;
-    bins.visit_near(p, [&](const unsigned int f) {
-      if (!facets[f].goes_on || facets[f].normal * normal <= alike)
-        return;
-      const Foot found = foot_on(p, f);
-      if (!any || found.distance < foot.distance - slack ||
-          (found.distance < foot.distance + slack && f < foot.facet))
-        foot = found;
-      any = true;
-    });
-    return any;
+    Foot                      foot  = foot_on(p, facet);
+    const double              slack = 1e-9 * reach;
+    std::vector<unsigned int> side{facet};
+    for (std::size_t k = 0; k < side.size(); ++k)
+      for (const unsigned int f : touching[side[k]])
+        if (facets[f].goes_on && are_alike(facets[f].normal, facets[facet].normal) &&
+            std::find(side.begin(), side.end(), f) == side.end())
+          if (const Foot found = foot_on(p, f); found.distance < 2. * reach)
+            {
+              side.push_back(f);
+              if (found.distance < foot.distance - slack ||
+                  (found.distance < foot.distance + slack && f < foot.facet))
+                foot = found;
+            }
+    return foot;
   }
 
 
@@ -407,11 +279,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                           \
-  template struct BoundaryFacet<dim>;                                                       \
-  template std::vector<BoundaryFacet<dim>> gather_boundary_facets<dim>(const Nodes<dim> &); \
-  template class BoundaryFacets<dim>;
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template class BoundaryFacets<2>;
+  template class BoundaryFacets<3>;
 } // namespace PeriDeal

@@ -27,9 +27,10 @@ namespace PeriDeal
       /** Add the images of a node through the sides that go on. */
       void find(const unsigned int m, std::vector<BoundaryImage<dim>> &images) const
       {
-        const std::vector<Foot> feet   = facets.feet(nodes.position(m));
+        const Point<dim>       &p      = nodes.position(m);
+        const std::vector<Foot> feet   = facets.feet(p, global(m), nodes.crack_point(m) - p);
         const unsigned int      n      = std::min<std::size_t>(feet.size(), 2 * dim);
-        const Corner            corner = reentrant_corner(nodes.position(m), feet);
+        const Corner            corner = reentrant_corner(m, feet);
         for (unsigned int set = 1; set < (1u << n); ++set)
           {
             const unsigned int common = set & corner.set;
@@ -68,6 +69,11 @@ namespace PeriDeal
         double       share = 1.; // of the node's volume, for an image through one of them
       };
 
+      types::global_dof_index global(const unsigned int m) const
+      {
+        return nodes.partitioner()->local_to_global(m);
+      }
+
       Part part_of(const Foot &foot, const double factor) const
       {
         Part part{factor, foot.point, {}, {}};
@@ -87,8 +93,7 @@ namespace PeriDeal
                const double                     share,
                std::vector<BoundaryImage<dim>> &images) const
       {
-        const auto         m_global = nodes.partitioner()->local_to_global(m);
-        std::vector<Part>  parts{{1., nodes.position(m), {{m_global, 1.}}, {nodes.position(m)}}};
+        std::vector<Part>  parts{{1., nodes.position(m), {{global(m), 1.}}, {nodes.position(m)}}};
         std::vector<Foot>  through;
         BoundaryImage<dim> image;
         double             farthest = 0.;
@@ -100,8 +105,9 @@ namespace PeriDeal
             {
               const Foot &foot = feet[k];
               image.volume *= facets.growth(foot) * share_of_edge(foot, through);
-              if (image.volume <= 0. || !reflect(parts, foot))
+              if (image.volume <= 0.)
                 return;
+              reflect(parts, foot);
               farthest = std::max(farthest, foot.distance);
               through.push_back(foot);
             }
@@ -119,8 +125,9 @@ namespace PeriDeal
       }
 
       /** The sides that meet where a node is: those of feet, then others, then mirrored ones. */
-      std::vector<Side> sides_at(const Point<dim> &p, const std::vector<Foot> &feet) const
+      std::vector<Side> sides_at(const unsigned int m, const std::vector<Foot> &feet) const
       {
+        const Point<dim> &p = nodes.position(m);
         std::vector<Side> sides;
         const auto        add_side = [&](const Side &side) {
           if (std::none_of(sides.begin(), sides.end(), [&](const Side &other) {
@@ -138,7 +145,7 @@ namespace PeriDeal
           add_facet(feet[a]);
         if (sides.empty())
           return sides;
-        for (const Foot &foot : facets.at(p))
+        for (const Foot &foot : facets.at(p, global(m)))
           add_facet(foot);
         for (const SymmetryPlane &plane : facets.planes())
           if (std::abs(p[plane.axis] - plane.at) < 1e-9 * reach)
@@ -165,9 +172,10 @@ namespace PeriDeal
        * The image through each of n sides is v/(n (1 - v)) of the node; beside a plane of symmetry
        * node and images are half of those of the whole body.
        */
-      Corner reentrant_corner(const Point<dim> &p, const std::vector<Foot> &feet) const
+      Corner reentrant_corner(const unsigned int m, const std::vector<Foot> &feet) const
       {
-        const std::vector<Side> sides    = sides_at(p, feet);
+        const Point<dim>       &p        = nodes.position(m);
+        const std::vector<Side> sides    = sides_at(m, feet);
         const auto              is_ahead = [&](const Side &of, const Side &other) {
           return std::any_of(other.corners.begin(), other.corners.end(), [&](const auto &corner) {
             return (corner - p) * of.normal > 1e-3 * corner.distance(p);
@@ -176,7 +184,8 @@ namespace PeriDeal
         std::vector<bool> is_of_corner(sides.size(), false);
         for (std::size_t a = 0; a < sides.size(); ++a)
           for (std::size_t b = 0; b < a; ++b)
-            if (is_ahead(sides[a], sides[b]) && is_ahead(sides[b], sides[a]))
+            if ((is_ahead(sides[a], sides[b]) && is_ahead(sides[b], sides[a])) ||
+                sides[a].normal * sides[b].normal < -1. + 1e-9) // at the tip of a crack
               is_of_corner[a] = is_of_corner[b] = true;
         Corner       corner;
         double       missing = 0.5;
@@ -223,20 +232,17 @@ namespace PeriDeal
       }
 
       /** Each point has an image through its nearest point of that side. */
-      bool reflect(std::vector<Part> &parts, const Foot &foot) const
+      void reflect(std::vector<Part> &parts, const Foot &foot) const
       {
         std::vector<Part> result;
         for (Part &part : parts)
           {
-            Foot nearest = foot;
-            if (parts.size() > 1 && !facets.nearest(part.place, facets.normal(foot.facet), nearest))
-              return false;
+            const Foot nearest = parts.size() > 1 ? facets.nearest(part.place, foot.facet) : foot;
             result.push_back(part_of(nearest, 2. * part.factor));
             part.factor *= -1.;
             result.push_back(part);
           }
         parts.swap(result);
-        return true;
       }
 
       void find_terms(const std::vector<Part> &parts, BoundaryImage<dim> &image) const

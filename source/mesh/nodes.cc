@@ -8,6 +8,7 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/boundary_facet.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/mesh/nodes.h>
 #include <perideal/mesh/part_faces.h>
@@ -128,8 +129,7 @@ namespace PeriDeal
     find_positions();
     find_volumes(nodal_volume);
     find_boundary_shares(domain.has_lattice() && !domain.image ? domain.holes : Holes<dim>());
-    if (cracks.on_faces())
-      find_crack_points(cracks);
+    find_crack_points(cracks);
     doubled = Utilities::MPI::max(crack_points.empty() ? 0 : 1, communicator()) > 0;
   }
 
@@ -260,21 +260,32 @@ namespace PeriDeal
   {
     if (!is_vertex_element(*dofs))
       return;
-    const std::vector<CrackGeometry<dim>> geometries = make_crack_geometries(cracks.pieces(0.));
+    std::vector<CrackGeometry<dim>> geometries;
+    if (cracks.on_faces())
+      geometries = make_crack_geometries(cracks.pieces(0.));
+    std::vector<bool> is_on_other(owned_count, false); // faces, of a mesh from a file
+    if constexpr (dim > 1)
+      if (!regular)
+        is_on_other = nodes_on_other_facets(*dofs, 1e-7 * shortest_edge);
     std::unordered_map<unsigned int, std::pair<Point<dim>, unsigned int>> middle;
     for_each_owned_dof(*dofs, [&](const unsigned int node, const auto &cell, const unsigned int) {
-      for (const CrackGeometry<dim> &crack : geometries)
-        if (crack.contains(positions[node]))
-          {
-            auto &[sum, n] = middle[node];
-            sum += cell->center() - Point<dim>();
-            ++n;
-            break;
-          }
+      if (is_on_other[node] ||
+          std::any_of(geometries.begin(), geometries.end(), [&](const CrackGeometry<dim> &crack) {
+            return crack.contains(positions[node]);
+          }))
+        {
+          auto &[sum, n] = middle[node];
+          sum += cell->center() - Point<dim>();
+          ++n;
+        }
     });
     constexpr double nudge = 1e-6; // of the way to the middle of the node's own cells
     for (const auto &[node, sum] : middle)
-      crack_points[node] = positions[node] + nudge * (sum.first / sum.second - positions[node]);
+      {
+        const Tensor<1, dim> way = sum.first / sum.second - positions[node];
+        crack_points[node] =
+          positions[node] + nudge / std::max(1., way.norm() / shortest_edge) * way;
+      }
   }
 
 

@@ -9,6 +9,7 @@
     strangers.py meshes     files as others write them
     strangers.py interfaces named lines and surfaces between two materials
     strangers.py names      what files give names to, and what is not there
+    strangers.py touching   pieces of a mesh that share no nodes
 """
 
 import math
@@ -339,11 +340,13 @@ def two_materials(path, xs, ys, at, moved=0.0, n_named=None):
     return write_file(path, text.replace("$Nodes", named + "$Nodes", 1))
 
 
-def bricks(path):
-    """The same in 3D: 8 x 3 x 3 cells, the left half "steel"; the plane between is "glue"."""
+def bricks(path, moved=0.0):
+    """The same in 3D: 8 x 3 x 3 cells, the left half "steel"; the plane between is "glue". moved: of inner nodes, within that plane if they are on it."""
     n, m = 9, 4
     number = lambda i, j, k: 1 + i + n * (j + m * k)
-    nodes = [f"{i / 8!r} {j / 12!r} {k / 12!r}" for k in range(m) for j in range(m) for i in range(n)]
+    place = lambda i, j, k, d, size: size * (moved * np.sin(7 * i + 3 * j + 5 * k + 2 * d) if 0 < i < 8 and 0 < j < 3 and 0 < k < 3 and (d > 0 or i != 4) else 0)
+    nodes = [" ".join(repr(float(p + place(i, j, k, d, size))) for d, (p, size) in enumerate(((i / 8, 1 / 8), (j / 12, 1 / 12), (k / 12, 1 / 12))))
+             for k in range(m) for j in range(m) for i in range(n)]
     square = lambda i, j, k: " ".join(str(number(i, *c)) for c in ((j, k), (j + 1, k), (j + 1, k + 1), (j, k + 1)))
     elements = [f"3 2 {side} {side} {square(i, j, k)}" for side, i in ((1, 0), (2, n - 1), (5, 4)) for j in range(3) for k in range(3)]
     for k in range(3):
@@ -405,10 +408,15 @@ def interfaces():
     for model in closed.summary["models"]:
         check(flow(closed, model) < 1e-9, f"{model}: nothing passes an insulated interface: {flow(closed, model)}")
         check_close(closed.probe(model, (0.9, 0.1)), 1, absolute=1e-8, what=f"{model}: behind it")
-    part = run_scene(NAMED, {"Dimension": "3", "Domain/Mesh file": bricks("bricks.msh"), "Peridynamics/Horizon": "0.3", "Cracks/Interfaces": "glue",
-                             BC + "Dirichlet": "left: 0 ; right: 1"})
-    for model in part.summary["models"]:
-        table.add(f"3D, {model}", flow(part, model, "right") * 16, 1 / 1.1, relative=1e-8 if model == FE else 1e-6)
+    for name, moved in (("3D", 0), ("3D, distorted", 0.1)):
+        on_mesh = {"Dimension": "3", "Domain/Mesh file": bricks("bricks.msh", moved), "Peridynamics/Horizon": "0.3", "Cracks/Interfaces": "glue",
+                   BC + "Dirichlet": "left: 0 ; right: 1"}
+        part = run_scene(NAMED, on_mesh)
+        for model in part.summary["models"]:
+            table.add(f"{name}, {model}", flow(part, model, "right") * 16, 1 / 1.1, relative=1e-8 if model == FE else 1e-6)
+    closed = run_scene(NAMED, {**on_mesh, "Cracks/Contact conductance": ""}, ranks=2)
+    for model in closed.summary["models"]:
+        check(flow(closed, model, "right") < 1e-9, f"3D, distorted, {model}: nothing passes an insulated interface: {flow(closed, model, 'right')}")
     exact = 0.5 * np.pi / (np.log(2) / 5 + 1 / (2 * 2) + np.log(1.5))
     run = run_scene(NAMED, {"Domain/Mesh file": ring("ring.msh", 32, 32), "Peridynamics/Horizon": "0.25", "Cracks/Interfaces": "glue",
                             "Material/Phases/Regions": "metal: mesh(core)", BC + "Dirichlet": "inner: 0 ; outer: 1"})
@@ -502,5 +510,104 @@ def binary(path):
     return out + b"\n$EndElements\n"
 
 
+def pieces(path, blocks, parted=lambda corner, middle: 0, moved=0.0):
+    """A mesh of blocks, each of rectangles or bricks between its own lines along x, y (and z): they share no nodes, nor do cells of a block for which
+    parted(corner, middle of the cell) differs there. Sides 1, 2, 3, ...: left, right, bottom, top, ... of the blocks' box. moved: of nodes that are inside a
+    block and not on x = 0.5 or y = 0.5, in parts of a cell."""
+    dim = len(blocks[0])
+    around = [(0, 0), (1, 0), (1, 1), (0, 1)] if dim == 2 else [(a, b, c) for c in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    lowest, highest = [[end(lines[d][k] for lines in blocks) for d in range(dim)] for end, k in ((min, 0), (max, -1))]
+    number, nodes, cells, sides = {}, [], [], []
+    for which, lines in enumerate(blocks):
+        def node(index, middle):
+            place = [lines[d][index[d]] for d in range(dim)]
+            key = (which, index, parted(place, middle))
+            if key not in number:
+                number[key] = len(number) + 1
+                inside = all(0 < index[d] < len(lines[d]) - 1 for d in range(dim)) and 0.5 not in place[:2]
+                nodes.append(" ".join(repr(float(p + (moved * (lines[d][1] - lines[d][0]) * np.sin(7 * index[0] + 3 * index[1] + 5 * index[-1] + d) if inside else 0)))
+                                      for d, p in enumerate(place)))
+            return number[key]
+        for first in np.ndindex(*[len(line) - 1 for line in lines]):
+            middle = [0.5 * (lines[d][first[d]] + lines[d][first[d] + 1]) for d in range(dim)]
+            corners = {offset: node(tuple(i + o for i, o in zip(first, offset)), middle) for offset in around}
+            cells.append(" ".join(str(corners[offset]) for offset in around))
+            for d in range(dim):
+                for end, limit in ((0, lowest), (1, highest)):
+                    if lines[d][first[d] + end] == limit[d]:
+                        face = [c for c in around if c[d] == end]
+                        face = face if dim == 2 else [face[0], face[1], face[3], face[2]] if d < 2 else face
+                        sides.append((2 * d + end + 1, " ".join(str(corners[c]) for c in face)))
+    kind = (1, 3) if dim == 2 else (3, 5)
+    elements = [f"{kind[0]} 2 {side} {side} {face}" for side, face in sides] + [f"{kind[1]} 2 9 9 {cell}" for cell in cells]
+    text = mesh_text(nodes, elements)
+    return write_file(path, text if dim == 2 else text.replace(" 0\n", "\n"))
+
+
+TOUCHING = {"Domain/Shape": "mesh file", "Peridynamics/Horizon": "0.21", "Coupling/Zone": "everywhere"}
+CONDUCTS = scene_text("""
+Dimension = 2
+Boundary conditions/Dirichlet = 1: 0 ; 2: 1
+Time/Steady = true
+Output/Fields = none
+""")
+BEARS = scene_text("""
+Dimension = 2
+Physics = elasticity
+Material/Young modulus = 1
+Material/Poisson ratio = 0.25
+Boundary conditions/Displacement = 1: 0, 0 ; 2: 0.01, 0
+Output/Fields = none
+""")
+
+
+def touching():
+    """Nothing passes from one piece of a mesh to another that only touches it, and a crack of doubled nodes is one, as in finite elements."""
+    lines = lambda a, b, n: [a + (b - a) * k / n for k in range(n + 1)]
+    low, high, coarse = lines(0, 0.5, 10), lines(0.5, 1, 10), lines(0.5, 1, 5)
+    nothing = lambda values, what: check(all(abs(value) < 1e-12 for value in values.values()), f"{what}: nothing passes: {values}")
+    for name, blocks in (("beside each other", [(low, low), (high, low)]), ("two faces beside one", [(low, low), (coarse, lines(0, 0.5, 5))]),
+                         ("at a corner", [(low, low), (high, high)])):
+        on_mesh = {**TOUCHING, "Domain/Mesh file": pieces("pieces.msh", blocks, moved=0.2)}
+        for nodes, models in (("vertices", f"{FE}, {PD}, {COUPLED}"), ("cell centers", PD)):
+            of_nodes = {**on_mesh, "Domain/Nodes": nodes, "Models": models}
+            run = run_scene(CONDUCTS, of_nodes)
+            nothing({model: run.model(model)["boundary flux"]["2"] for model in run.summary["models"]}, f"heat, {name}, {nodes}")
+            run = run_scene(BEARS, of_nodes, ranks=2 if nodes == "vertices" else 1)
+            nothing({model: run.total("force on 2 in x", model) for model in run.summary["models"]}, f"a solid, {name}, {nodes}")
+    kept = run_scene(CONDUCTS, {**on_mesh, "Models": PD, "Peridynamics/Bonds across voids": "keep"})
+    check(kept.model(PD)["boundary flux"]["2"] > 0.05, "'keep' keeps bonds between them")
+    thin = lines(0, 0.25, 3)
+    bricks = {**TOUCHING, "Dimension": "3", "Domain/Mesh file": pieces("bricks.msh", [(low[::2], thin, thin), (coarse, thin, lines(0, 0.25, 2))], moved=0.1),
+              "Peridynamics/Horizon": "0.3"}
+    for nodes, models in (("vertices", f"{FE}, {PD}, {COUPLED}"), ("cell centers", PD)):
+        run = run_scene(CONDUCTS, {**bricks, "Domain/Nodes": nodes, "Models": models})
+        nothing({model: run.model(model)["boundary flux"]["2"] for model in run.summary["models"]}, f"bricks, {nodes}")
+    run = run_scene(BEARS, {**bricks, "Models": f"{FE}, {PD}", BC + "Displacement": "1: 0, 0, 0 ; 2: 0.01, 0, 0"})
+    nothing({model: run.total("force on 2 in x", model) for model in run.summary["models"]}, "solid bricks")
+
+    table = Comparison("A crack of doubled nodes up to the middle of a square")
+    square = low + high[1:]
+    doubled = pieces("crack.msh", [(square, square)], lambda place, middle: place[1] == 0.5 and place[0] < 0.5 and middle[1] > 0.5, moved=0.2)
+    whole = pieces("whole.msh", [(square, square)], moved=0.2)
+    across = {**TOUCHING, BC + "Dirichlet": "3: 0 ; 4: 1"}
+    run = run_scene(CONDUCTS, {**across, "Domain/Mesh file": doubled, "Models": f"{FE}, {PD}, {COUPLED}"})
+    flow = {model: run.model(model)["boundary flux"]["4"] for model in run.summary["models"]}
+    for model in (PD, COUPLED):
+        table.add(f"heat, {model}: over finite elements", flow[model] / flow[FE], 1, absolute=0.02)
+    pull = {**TOUCHING, BC + "Displacement": "3: 0, 0 ; 4: 0, 0.01"}
+    run = run_scene(BEARS, {**pull, "Domain/Mesh file": doubled, "Models": f"{FE}, {PD}, {COUPLED}"})
+    force = {model: run.total("force on 4 in y", model) for model in run.summary["models"]}
+    for model in (PD, COUPLED):
+        table.add(f"solid, {model}: over finite elements", force[model] / force[FE], 1, absolute=0.06)
+    # Bonds alone: those that a segment cuts, and those that end at the crack's faces.
+    for nodes, limit in (("vertices", 1e-3), ("cell centers", 1e-6)):
+        bonds = {**pull, "Models": PD, "Domain/Nodes": nodes, "Peridynamics/Surface correction": "none"}
+        segment = {"Cracks/Segments": "0,0.5 ; 0.5,0.5", "Cracks/Mesh": "faces" if nodes == "vertices" else "auto"}
+        runs = [run_scene(BEARS, {**bonds, **more}) for more in ({"Domain/Mesh file": doubled}, {"Domain/Mesh file": whole, **segment})]
+        table.add(f"solid, {nodes}, bonds alone: over a segment there", runs[0].total("force on 4 in y", PD) / runs[1].total("force on 4 in y", PD), 1, absolute=limit)
+    table.show()
+
+
 if __name__ == "__main__":
-    run_parts(voids, contact, refusals, latent, meshes, interfaces, names)
+    run_parts(voids, contact, refusals, latent, meshes, interfaces, names, touching)

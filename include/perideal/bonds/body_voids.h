@@ -25,7 +25,10 @@ namespace PeriDeal
     /** Whether some way of that length from a node known here may leave the body. */
     virtual bool is_near(const unsigned int node, const double distance) const = 0;
 
-    /** Whether the way between two nodes leaves it. The same in both directions. */
+    /**
+     * Whether the way between two nodes, on meshes of at most two reaches, leaves it or leads from
+     * one piece of a mesh to another that only touches it. The same in both directions.
+     */
     virtual bool between(const unsigned int node, const unsigned int neighbor) const = 0;
 
     /**

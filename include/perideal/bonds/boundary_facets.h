@@ -3,10 +3,9 @@
 
 #pragma once
 
-#include <perideal/bonds/point_bins.h>
+#include <perideal/mesh/boundary_facet.h>
 #include <perideal/mesh/nodes.h>
 
-#include <algorithm>
 #include <array>
 #include <functional>
 #include <vector>
@@ -21,44 +20,6 @@ namespace PeriDeal
     bool                       above; // the body lies below it
     dealii::types::boundary_id side;
   };
-
-
-  /** A segment (2D) or triangle (3D) of the boundary of a mesh. */
-  template <int dim>
-  struct BoundaryFacet
-  {
-    std::array<dealii::types::global_dof_index, dim> nodes; // on the corners, or 0
-    std::array<dealii::Point<dim>, dim>              corners;
-    dealii::Tensor<1, dim>                           normal; // outwards
-    double                                           area;
-    dealii::types::boundary_id                       side;
-
-    /** Weights of the corners in the point of it that is nearest to p. */
-    std::array<double, dim> nearest_weights(const dealii::Point<dim> &p) const;
-
-    dealii::Point<dim> at(const std::array<double, dim> &weights) const;
-  };
-
-  /**
-   * All of the boundary, on each process, in an order that does not depend on who owns what; with
-   * nodes where they are those of vertices. Collective.
-   */
-  template <int dim>
-  std::vector<BoundaryFacet<dim>> gather_boundary_facets(const Nodes<dim> &nodes);
-
-  /** Numbers of facets, so that visit_near() finds all that come within the reach of a point. */
-  template <int dim, typename Facet>
-  PointBins<dim> bins_of_facets(const std::vector<Facet> &facets, const double reach)
-  {
-    double size = 0.; // of the largest
-    for (const Facet &facet : facets)
-      for (const dealii::Point<dim> &corner : facet.corners)
-        size = std::max(size, corner.distance(facet.corners[0]));
-    PointBins<dim> bins(reach + size);
-    for (unsigned int f = 0; f < facets.size(); ++f)
-      bins.add(facets[f].corners[0], f);
-    return bins;
-  }
 
 
   /**
@@ -98,23 +59,25 @@ namespace PeriDeal
     /**
      * The points of the boundary within the reach that are nearest to p among those around them,
      * the nearest first, one for each direction: of those whose facets' normals differ by less
-     * than some 37 degrees the nearest.
+     * than some 37 degrees the nearest. Of facets at p itself, where a node is, the node's own.
+     * @param inwards from a node where pieces of the body touch into its own cells, else 0
      */
-    std::vector<Foot> feet(const dealii::Point<dim> &p) const;
+    std::vector<Foot> feet(const dealii::Point<dim>             &p,
+                           const dealii::types::global_dof_index node,
+                           const dealii::Tensor<1, dim>         &inwards) const;
 
-    /** The facets in which p lies, one for each direction, whether their sides go on or not. */
-    std::vector<Foot> at(const dealii::Point<dim> &p) const;
+    /** The facets that end at a node, one for each direction, whether their sides go on or not. */
+    std::vector<Foot> at(const dealii::Point<dim>             &p,
+                         const dealii::types::global_dof_index node) const;
 
     /** Whether normals are those of one side: they differ by less than those 37 degrees. */
     static bool are_alike(const dealii::Tensor<1, dim> &a, const dealii::Tensor<1, dim> &b);
 
     /**
-     * The nearest point of facets whose normals differ from @p normal by less than that; false if
-     * there is none within the reach and a facet's size.
+     * The nearest point of a side, which is what hangs together with a facet by others whose
+     * normals differ from its own by less than that, within two reaches.
      */
-    bool nearest(const dealii::Point<dim>     &p,
-                 const dealii::Tensor<1, dim> &normal,
-                 Foot                         &foot) const;
+    Foot nearest(const dealii::Point<dim> &p, const unsigned int facet) const;
 
     /** Whether a point of the boundary is nearer than that. */
     bool is_nearer(const dealii::Point<dim> &p, const double distance) const;
@@ -136,6 +99,7 @@ namespace PeriDeal
     void find_corner_normals();
     Foot foot_on(const dealii::Point<dim> &p, const unsigned int facet) const;
     bool is_lowest(const dealii::Point<dim> &p, const Foot &foot) const;
+    bool ends_at(const unsigned int facet, const dealii::types::global_dof_index node) const;
 
     double                                 reach;
     std::vector<Facet>                     facets;

@@ -88,7 +88,8 @@ namespace PeriDeal
 
     /**
      * The point that decides on which side of a crack the node is: its position, or for a node
-     * doubled by a crack cut into the mesh a point slightly inside its own cells.
+     * doubled by a crack cut into the mesh, or that touches a face of another piece of a mesh from
+     * a file, a point slightly inside its own cells.
      */
     dealii::Point<dim> crack_point(const unsigned int node) const;
 
@@ -119,7 +120,7 @@ namespace PeriDeal
     /** The lattice of a box or a plate with a hole. Empty on mesh files. */
     const std::optional<Lattice<dim>> &lattice() const;
 
-    /** Some lattice sites carry two nodes, because a crack was cut into the mesh. */
+    /** Some nodes have a crack point of their own. */
     bool has_doubled_nodes() const;
 
     /** Some cells of the lattice are merged (`Coarsening`), so that sites in them have no node. */

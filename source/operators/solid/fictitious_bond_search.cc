@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/bonds/point_bins.h>
 #include <perideal/mesh/lattice_sites.h>
+#include <perideal/mesh/point_bins.h>
 #include <perideal/operators/solid/fictitious_bond_search.h>
 #include <perideal/operators/solid/fictitious_cuts.h>
 
@@ -186,7 +186,7 @@ namespace PeriDeal
     for (const auto &[xi, g] : around)
       {
         const BoundaryImage<dim> &image = beyond.list[g];
-        if (families.cracks().leaves_body(i, image.origin))
+        if (families.cracks().leaves_body(image.origin, i)) // the origin is near a side
           continue;
         // As on a lattice.
         const bool cut = !families.cracks().empty() &&
