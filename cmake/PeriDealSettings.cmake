@@ -53,7 +53,8 @@ if(PERIDEAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   endif()
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env ${perideal_ccache_settings} ${PERIDEAL_CCACHE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(perideal_own_flags INTERFACE -fpch-preprocess)
+    # No folder in messages, either: then what was compiled in one clone serves in others.
+    target_compile_options(perideal_own_flags INTERFACE -fpch-preprocess -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
   endif()
 endif()
 
