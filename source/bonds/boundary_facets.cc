@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace PeriDeal
@@ -236,10 +237,11 @@ namespace PeriDeal
     Foot                      foot  = foot_on(p, facet);
     const double              slack = 1e-9 * reach;
     std::vector<unsigned int> side{facet};
+    std::set<unsigned int>    seen{facet};
     for (std::size_t k = 0; k < side.size(); ++k)
       for (const unsigned int f : touching[side[k]])
         if (facets[f].goes_on && are_alike(facets[f].normal, facets[facet].normal) &&
-            std::find(side.begin(), side.end(), f) == side.end())
+            seen.insert(f).second)
           if (const Foot found = foot_on(p, f); found.distance < 2. * reach)
             {
               side.push_back(f);

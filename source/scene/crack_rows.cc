@@ -205,7 +205,7 @@ namespace PeriDeal
                              text_of<dim>(scene.domain.cells) + " cells";
     const bool left  = scene.cracks.nodes_on_cracks == NodesOnCracks::left;
     const bool fixed = left || scene.domain.is_image() || scene.domain.coarsening.times > 0 ||
-                       scene.domain.has_extra_layers();
+                       scene.domain.has_extra_layers() || scene.domain.holes.has_joints();
     const auto cells = fixed ? std::optional<Cells<dim>>() :
                                cells_off_cracks(pieces, scene.domain, at_centers);
     if (cells)

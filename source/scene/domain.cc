@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -319,9 +321,9 @@ namespace PeriDeal
                     (is_given("Hole center") || is_given("Hole radius"));
     shape = Shape::plate_with_hole;
     const std::array<unsigned int, 2> n_cells{{cells[0], cells[dim > 1]}};
-    for (std::size_t k = 0, n = holes.listed.size(); k < n; ++k)
+    std::vector<Hole> joints;
+    for (const Hole &hole : holes.listed)
       {
-        const Hole      hole  = holes.listed[k];
         const HoleCells found = cells_of_hole(hole,
                                               holes.listed,
                                               Point<2>(lower[0], lower[dim > 1]),
@@ -334,13 +336,18 @@ namespace PeriDeal
               "' holds no centre of a cell: it lies outside the body, or is smaller than a cell. Move it, or take more 'Cells'.");
         if (found.joints.empty())
           continue;
-        holes.listed.insert(holes.listed.end(), found.joints.begin(), found.joints.end());
+        joints.insert(joints.end(), found.joints.begin(), found.joints.end());
         notes.push_back(
           "'" + hole.text + "' (entry 'Holes' in section 'Domain') is thin for the cells: of the " +
           std::to_string(found.n_removed) + " that are removed for it, " +
           std::to_string(found.joints.size()) +
           " have their centre beside it, so that it is open all along. It is a cell wide there. Thin holes that meet are better one polygon: where they do, cells may stay joined at a corner.");
       }
+    std::sort(joints.begin(), joints.end(), [](const Hole &a, const Hole &b) {
+      return std::make_pair(a.corners[0][1], a.corners[0][0]) <
+             std::make_pair(b.corners[0][1], b.corners[0][0]);
+    });
+    holes.listed.insert(holes.listed.end(), joints.begin(), joints.end());
   }
 
 

@@ -136,7 +136,7 @@ namespace PeriDeal
       for (const char *c = formula.c_str(); *(c += std::strcspn(c, "0123456789.")) != '\0';)
         {
           char        *end    = nullptr;
-          const double number = std::strtod(c, &end);
+          const double number = std::min(std::strtod(c, &end), 1e300); // finite
           for (const double a : {-number, number})
             places.insert(places.end(), {a - last, a, a + last});
           last = number;

@@ -286,11 +286,26 @@ namespace PeriDeal
     Hole polygon;
     for (const Point<2> &corner : hole.corners)
       polygon.corners.push_back(to_cells(corner));
+    const auto        box = hole.box();
+    std::vector<Hole> near;
+    for (const Hole &other : holes)
+      {
+        const auto of_other = other.box();
+        bool       meets    = true;
+        for (unsigned int d = 0; d < 2; ++d)
+          {
+            const double reach = 3. * edges[d] / n_cells[d];
+            meets = meets && of_other.first[d] < box.second[d] + reach &&
+                    of_other.second[d] > box.first[d] - reach;
+          }
+        if (meets)
+          near.push_back(other);
+      }
     const CellsAround around(std::move(polygon), n_cells, [&](const long i, const long j) {
       const Point<2> center = place(i + 0.5, j + 0.5);
       const auto     is_in  = [&](const Hole &one) { return one.contains(center); };
       return is_in(hole)                                    ? CellsAround::holds_centre :
-             std::any_of(holes.begin(), holes.end(), is_in) ? CellsAround::in_other :
+             std::any_of(near.begin(), near.end(), is_in)   ? CellsAround::in_other :
                                                               CellsAround::stays;
     });
     around.for_each_removed([&](const long i, const long j, const CellsAround::State state) {

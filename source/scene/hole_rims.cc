@@ -158,7 +158,8 @@ namespace PeriDeal
                     least = found;
                   }
               }
-            best->rim += b - a;
+            if (best != nullptr)
+              best->rim += b - a;
           }
     }
   } // namespace
@@ -213,7 +214,7 @@ namespace PeriDeal
                            return joint.text.empty() &&
                                   holes[k].distance(joint.corners[0] +
                                                     0.5 * (joint.corners[2] - joint.corners[0])) <
-                                    0.75 * shortest;
+                                    0.501 * joint.corners[0].distance(joint.corners[2]);
                          }));
     for (bool any = true; any;)
       {

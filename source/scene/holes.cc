@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -184,13 +185,39 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    bool is_in_earlier_row(const Point<2> &p, const Hole &joint)
+    {
+      const Point<2> &corner = joint.corners[0];
+      return p[1] < corner[1] || (p[1] == corner[1] && p[0] < corner[0]);
+    }
+  } // namespace
+
+
   template <int dim>
   bool Holes<dim>::contains(const Point<dim> &p) const
   {
-    if (dim > 1 && std::any_of(listed.begin(), listed.end(), [&](const Hole &hole) {
-          return hole.contains(Point<2>(p[0], p[dim > 1]));
-        }))
-      return true;
+    if (dim > 1)
+      {
+        const Point<2> q(p[0], p[dim > 1]);
+        auto           hole = listed.begin();
+        for (; hole != listed.end() && !hole->text.empty(); ++hole)
+          if (hole->contains(q))
+            return true;
+        // Of joints, which can be thousands, the last one that begins before q in its row.
+        const auto row =
+          std::upper_bound(hole, listed.end(), q[1], [](const double y, const Hole &joint) {
+            return y < joint.corners[0][1];
+          });
+        if (row != hole)
+          {
+            const Point<2> at(q[0], std::prev(row)->corners[0][1]);
+            const auto     next = std::upper_bound(hole, row, at, is_in_earlier_row);
+            if (next != hole && std::prev(next)->contains(q))
+              return true;
+          }
+      }
     if (!has_one)
       return false;
     Tensor<1, dim> r = p - center;

@@ -212,9 +212,8 @@ namespace PeriDeal
                               (n == 1 ? " time" : " times") + "; it has " +
                               readable_count(mesh->n_global_active_cells()) +
                               " cells at the end ('Zone = adaptive' in section 'Coupling').");
-    for (const List &list : {companions(), problems})
-      for (const Problem<dim> *const problem : list)
-        problem->note_end(context());
+    for (const Problem<dim> *const problem : all_problems())
+      problem->note_end(context());
     for (const std::string &note : record->notes)
       tell.note(note);
     nlohmann::ordered_json summary = summary_now(true);

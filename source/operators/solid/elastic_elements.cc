@@ -162,7 +162,7 @@ namespace PeriDeal
         Vector free(unknowns);
         free = 1.;
         conditions->mask(free);
-        hanging.let_follow(find_followers(dofs, cut_by_cracks, free, Vector(nodes)),
+        hanging.let_follow(find_followers(dofs, cut_by_cracks, hanging, free, Vector(nodes)),
                            dofs.get_communicator());
       }
     conditions->let_follow(hanging.owned());

@@ -6,6 +6,7 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/types.h>
 #include <perideal/operators/parts/cut_cells.h>
+#include <perideal/operators/parts/hanging_nodes.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -46,12 +47,13 @@ namespace PeriDeal
    * the nearest node that has one, in a cell of both and on the same side of the cracks: local
    * numbers of their unknowns, interleaved, ascending. Collective.
    *
-   * @param free 1 at unknowns that no condition prescribes
+   * Hanging nodes neither follow nor lead. @param free 1 at unknowns that no condition prescribes
    */
   template <int dim>
   std::vector<std::pair<unsigned int, unsigned int>>
   find_followers(const dealii::DoFHandler<dim> &dofs,
                  const CutCells<dim>           &cut_cells,
+                 const HangingNodes<dim>       &hanging,
                  const Vector                  &free,
                  Vector                         n_kept) // 0 at each node
   {
@@ -80,7 +82,8 @@ namespace PeriDeal
       for (unsigned int a = 0; a < n; ++a)
         for (unsigned int b = 0; b < n; ++b)
           if (layout.in_local_range(indices[a]) && n_kept(indices[a]) == 0. &&
-              n_kept(indices[b]) > 0. &&
+              n_kept(indices[b]) > 0. && !hanging.is_hanging(dim * indices[a]) &&
+              !hanging.is_hanging(dim * indices[b]) &&
               cut_cells.kept_fraction(cell, a, b, [](auto, auto) { return 1.; }) > 0.)
             {
               Master master{{}, layout.global_to_local(indices[b])};

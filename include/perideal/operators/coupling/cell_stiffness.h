@@ -87,9 +87,12 @@ namespace PeriDeal
         }
       return list;
     }();
-    const bool          parted = std::any_of(cracks.begin(), cracks.end(), [&](const auto &crack) {
+    double              reach  = 0.;
+    for (unsigned int v = 1; v < n_corners; ++v)
+      reach = std::max(reach, corners[0].distance(corners[v]));
+    const bool parted = std::any_of(cracks.begin(), cracks.end(), [&](const auto &crack) {
       bool parts = false;
-      if (crack.is_near(corners[0], corners[0].distance(corners[n_corners - 1])))
+      if (crack.is_near(corners[0], reach))
         for (unsigned int a = 0; a < n_corners; ++a)
           for (unsigned int b = 0; b < a; ++b)
             parts = parts || crack.separates(corners[a], corners[b]);
