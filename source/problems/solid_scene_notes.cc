@@ -331,7 +331,7 @@ namespace PeriDeal
   template <int dim>
   std::string note_on_bending(const Scene<dim> &scene)
   {
-    constexpr double tolerable = 0.02, slender = 3.;
+    constexpr double tolerable = 0.05, slender = 3.;
     if (dim == 1 || !scene.domain.has_lattice())
       return {};
     const auto           beyond = beyond_sides(scene);

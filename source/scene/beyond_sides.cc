@@ -40,29 +40,33 @@ namespace PeriDeal
 
 
     /**
-     * A strip, bar or plate on a lattice: less than eight horizons thick (with its mirror image at
-     * planes of symmetry), and three times as long. What a linear continuation adds beyond free
-     * sides makes such bodies too stiff in bending.
+     * Directions along which a body on a lattice, without holes, is a third as long as along
+     * another one or less, with its mirror image at planes of symmetry: where a strip, bar or plate
+     * is thin. What a linear continuation adds beyond free sides makes it too stiff in bending.
      */
     template <int dim>
-    bool is_slender(const BodyParameters<dim> &body)
+    std::array<bool, dim> thin_directions(const BodyParameters<dim> &body)
     {
-      if (!body.domain.has_lattice())
-        return false;
+      std::array<bool, dim> thin{};
+      if (!body.domain.has_lattice() || body.domain.has_voids() || body.domain.has_extra_layers())
+        return thin;
       Tensor<1, dim> extent = body.domain.upper - body.domain.lower;
       for (const types::boundary_id side : body.boundary_conditions.symmetry)
         if (side < 2 * dim)
           extent[side / 2] *= 2.;
-      const auto [thin, length] = std::minmax_element(extent.begin_raw(), extent.end_raw());
-      return *thin < 7.999 * body.horizon() && *length > 2.999 * *thin;
+      const double longest = *std::max_element(extent.begin_raw(), extent.end_raw());
+      for (unsigned int d = 0; d < dim; ++d)
+        thin[d] = longest > 2.999 * extent[d];
+      return thin;
     }
 
 
-    /** What families lack at free sides is made up for in part by weights of their own bonds. */
+    /** What families lack at some free sides is made up for in part by their own bonds. */
     template <int dim>
     bool takes_own_bonds(const BodyParameters<dim> &body)
     {
-      return takes_steps(body) || is_slender(body);
+      const auto thin = thin_directions(body);
+      return takes_steps(body) || std::find(thin.begin(), thin.end(), true) != thin.end();
     }
 
 
@@ -205,6 +209,9 @@ namespace PeriDeal
     beyond.fill(!automatic || !takes_own_bonds(body) ? BeyondSide::continued :
                 completes_at_surfaces(body)      ? BeyondSide::in_part :
                                                    BeyondSide::nothing);
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      if (!takes_steps(body) && !thin_directions(body)[side / 2])
+        beyond[side] = BeyondSide::continued;
     const auto set = [&](const types::boundary_id side, const BeyondSide value) {
       if (side < 2 * dim)
         beyond[side] = value;

@@ -114,7 +114,7 @@ namespace PeriDeal
       EntryType::choice,
       "auto",
       "",
-      "What makes up for missing bonds. `auto`: for diffusion crack scaling beside insulated cracks that lie still, where it is the more accurate one for all models of the scene, else nothing; families of elastic peridynamics go on beyond planes of symmetry and all flat sides of a lattice, and beyond the whole boundary of a mesh from a file with nodes at vertices, at no more cost than their bonds; where bonds may break, in motion, and in slender bodies on a lattice (less than eight horizons thick, three times as long), "
+      "What makes up for missing bonds. `auto`: for diffusion crack scaling beside insulated cracks that lie still, where it is the more accurate one for all models of the scene, else nothing; families of elastic peridynamics go on beyond planes of symmetry and all flat sides of a lattice, and beyond the whole boundary of a mesh from a file with nodes at vertices, at no more cost than their bonds; where bonds may break, in motion, and where a body without holes on a lattice is thin (a third as long as along another direction, or less), "
       "beyond free flat sides of a lattice in part, what they lack there and at its holes being made up for by the weights of their own bonds, and on meshes beyond sides with conditions, with such weights at all others. Factors of bonds: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
       "voids. Elasticity has `energy`, of stretches along the axes, `volume`, by the volumes of both ends' families, and `moments`, the smallest change of bonds "
