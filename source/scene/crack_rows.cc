@@ -180,6 +180,13 @@ namespace PeriDeal
         text += (d > 0 ? ", " : "") + std::to_string(cells[d]);
       return text;
     }
+
+
+    /** Thin holes remove cells of this very lattice, which come last (HoleCells). */
+    bool has_joints(const std::vector<Hole> &listed)
+    {
+      return !listed.empty() && listed.back().text.empty();
+    }
   } // namespace
 
 
@@ -205,7 +212,7 @@ namespace PeriDeal
                              text_of<dim>(scene.domain.cells) + " cells";
     const bool left  = scene.cracks.nodes_on_cracks == NodesOnCracks::left;
     const bool fixed = left || scene.domain.is_image() || scene.domain.coarsening.times > 0 ||
-                       scene.domain.has_extra_layers() || scene.domain.holes.has_joints();
+                       scene.domain.has_extra_layers() || has_joints(scene.domain.holes.listed);
     const auto cells = fixed ? std::optional<Cells<dim>>() :
                                cells_off_cracks(pieces, scene.domain, at_centers);
     if (cells)

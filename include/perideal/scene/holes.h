@@ -88,13 +88,7 @@ namespace PeriDeal
     double             radius = 0.25;
     HoleShape          shape  = HoleShape::circle;
     double             angle  = 0.; // degrees
-    std::vector<Hole>  listed; // joints last, in the order of their rows and columns
-
-    /** Cells of this lattice are removed to keep thin holes open. */
-    bool has_joints() const
-    {
-      return !listed.empty() && listed.back().text.empty();
-    }
+    std::vector<Hole>  listed;
 
     /** In three dimensions they are bores along z. */
     bool contains(const dealii::Point<dim> &p) const;
