@@ -335,15 +335,8 @@ namespace PeriDeal
     if (dim == 1 || !scene.domain.has_lattice())
       return {};
     const auto           beyond = beyond_sides(scene);
-    const Tensor<1, dim> h = scene.domain.spacing(), size = scene.domain.upper - scene.domain.lower;
-    double               longest = 0.;
-    for (unsigned int d = 0; d < dim; ++d)
-      longest =
-        std::max(longest,
-                 size[d] * (beyond[2 * d] == BeyondSide::mirrored ||
-                                beyond[2 * d + 1] == BeyondSide::mirrored ?
-                              2. :
-                              1.));
+    const Tensor<1, dim> h = scene.domain.spacing(), size = whole_extent(scene);
+    const double         longest = *std::max_element(size.begin_raw(), size.end_raw());
     double               bent = 0., twisted = 0.;
     unsigned int         thin = 0;
     for (unsigned int d = 0; d < dim; ++d)
@@ -353,12 +346,11 @@ namespace PeriDeal
           return beyond[2 * d] == what || beyond[2 * d + 1] == what;
         };
         const bool whole = !has(BeyondSide::in_part);
-        const bool half  = has(BeyondSide::mirrored);
         if (has(BeyondSide::nothing) || (whole && !has(BeyondSide::continued)) ||
-            longest < slender * (half ? 2. : 1.) * size[d])
+            longest < slender * size[d])
           continue;
         // Measured (doc/elasticity.md).
-        const double m = scene.horizon() / h[d], n = (half ? 2. : 1.) * scene.domain.cells[d],
+        const double m = scene.horizon() / h[d], n = size[d] / h[d],
                      more = (dim == 2 ? 1. : 1.25) * (2.45 + 0.25 * m * m) / (n * n),
                      less = (dim == 2 ? 1. : 0.7) * std::pow((0.4 + 0.475 * m) / n, m);
         if ((whole ? more : less) > bent || (dim == 3 && more > twisted))

@@ -50,11 +50,8 @@ namespace PeriDeal
       std::array<bool, dim> thin{};
       if (!body.domain.has_lattice() || body.domain.has_voids() || body.domain.has_extra_layers())
         return thin;
-      Tensor<1, dim> extent = body.domain.upper - body.domain.lower;
-      for (const types::boundary_id side : body.boundary_conditions.symmetry)
-        if (side < 2 * dim)
-          extent[side / 2] *= 2.;
-      const double longest = *std::max_element(extent.begin_raw(), extent.end_raw());
+      const Tensor<1, dim> extent  = whole_extent(body);
+      const double         longest = *std::max_element(extent.begin_raw(), extent.end_raw());
       for (unsigned int d = 0; d < dim; ++d)
         thin[d] = longest > 2.999 * extent[d];
       return thin;
@@ -229,6 +226,17 @@ namespace PeriDeal
 
 
   template <int dim>
+  Tensor<1, dim> whole_extent(const BodyParameters<dim> &body)
+  {
+    Tensor<1, dim> extent = body.domain.upper - body.domain.lower;
+    for (const types::boundary_id side : body.boundary_conditions.symmetry)
+      if (side < 2 * dim)
+        extent[side / 2] *= 2.;
+    return extent;
+  }
+
+
+  template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body)
   {
     return takes_own_bonds(body) && (body.domain.has_lattice() || completes_mesh(body)) &&
@@ -297,6 +305,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                 \
+  template Tensor<1, dim> whole_extent(const BodyParameters<dim> &);                              \
   template bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side);   \
   template bool completes_at_surfaces(const BodyParameters<dim> &);                               \
   template bool families_end(const BodyParameters<dim> &);                                        \

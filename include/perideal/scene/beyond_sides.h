@@ -32,6 +32,11 @@ namespace PeriDeal
   std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);
 
 
+  /** Lengths of a lattice along its axes, with the mirror image at planes of symmetry. */
+  template <int dim>
+  dealii::Tensor<1, dim> whole_extent(const BodyParameters<dim> &body);
+
+
   /**
    * In motion, where bonds may break, and in slender bodies on a lattice, families of an elastic
    * body that end elsewhere, at voids and free sides, are completed by their own bonds (on a
