@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/connected_sets.h>
 #include <perideal/bonds/body_voids.h>
 #include <perideal/bonds/bond_pieces.h>
 #include <perideal/bonds/boundary_facets.h>
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -357,30 +357,25 @@ namespace PeriDeal
       }
 
       /** Numbers of the parts of the boundary that hang together, by facet. */
-      std::vector<std::size_t> find_rims() const
+      std::vector<unsigned int> find_rims() const
       {
-        std::vector<std::size_t> of(facets.size());
-        std::iota(of.begin(), of.end(), 0);
-        const auto first = [&](std::size_t f) {
-          while (of[f] != f)
-            f = of[f] = of[of[f]];
-          return f;
-        };
-        std::map<types::global_dof_index, std::size_t> at_node;
-        for (std::size_t f = 0; f < facets.size(); ++f)
+        ConnectedSets                                   sets(facets.size());
+        std::map<types::global_dof_index, unsigned int> at_node;
+        for (unsigned int f = 0; f < facets.size(); ++f)
           for (const auto node : facets[f].nodes)
-            of[first(f)] = first(at_node.try_emplace(node, f).first->second);
-        for (std::size_t f = 0; f < facets.size(); ++f)
-          of[f] = first(f);
+            sets.join(f, at_node.try_emplace(node, f).first->second);
+        std::vector<unsigned int> of(facets.size());
+        for (unsigned int f = 0; f < facets.size(); ++f)
+          of[f] = sets.root(f);
         return of;
       }
 
-      const Nodes<dim>        &nodes;
-      const double             reach, tiny;
-      std::vector<Facet>       facets;
-      PointBins<dim>           bins;
-      std::vector<std::size_t> rims;  // of the facets
-      std::vector<bool>        close; // of the nodes known here: a facet is within the reach
+      const Nodes<dim>         &nodes;
+      const double              reach, tiny;
+      std::vector<Facet>        facets;
+      PointBins<dim>            bins;
+      std::vector<unsigned int> rims;  // of the facets
+      std::vector<bool>         close; // of the nodes known here: a facet is within the reach
     };
   } // namespace
 

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/geometry_info.h>
 
+#include <perideal/base/clipped.h>
 #include <perideal/mesh/crack_faces.h>
 
 #include <algorithm>
@@ -57,26 +58,6 @@ namespace PeriDeal
              std::all_of(face.begin(), face.end(), [&](const unsigned int v) {
                return crack.contains(p[v]);
              });
-    }
-
-
-    /** The part of a segment or polygon in the half space normal * (x - origin) <= 0. */
-    template <int dim>
-    std::vector<Point<dim>> clipped(const std::vector<Point<dim>> &corners,
-                                    const Point<dim>              &origin,
-                                    const Tensor<1, dim>          &normal)
-    {
-      std::vector<Point<dim>> inside;
-      for (std::size_t i = 0; i < corners.size(); ++i)
-        {
-          const Point<dim> &a = corners[i], &b = corners[(i + 1) % corners.size()];
-          const double      at_a = normal * (a - origin), at_b = normal * (b - origin);
-          if (at_a <= 0.)
-            inside.push_back(a);
-          if ((at_a < 0. && at_b > 0.) || (at_a > 0. && at_b < 0.))
-            inside.push_back(a + at_a / (at_a - at_b) * (b - a));
-        }
-      return inside;
     }
 
 

@@ -8,6 +8,7 @@
 #include <deal.II/grid/tria.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <perideal/base/connected_sets.h>
 #include <perideal/base/gathered_lists.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
@@ -17,7 +18,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <sstream>
 
 namespace PeriDeal
@@ -28,14 +28,6 @@ namespace PeriDeal
   {
     template <int dim>
     using Corners = std::array<Point<dim>, GeometryInfo<dim>::vertices_per_cell>;
-
-
-    unsigned int root_of(std::vector<unsigned int> &parents, unsigned int i)
-    {
-      while (parents[i] != i)
-        i = parents[i] = parents[parents[i]];
-      return i;
-    }
 
 
     /** Whether p is in the cell with these corners: Newton's method for its unit coordinates. */
@@ -145,15 +137,10 @@ namespace PeriDeal
   {
     // Coarse cells are known to all processes.
     const Triangulation<dim> &mesh = run.dofs().get_triangulation();
-    std::vector<unsigned int> parents(mesh.n_vertices());
-    std::iota(parents.begin(), parents.end(), 0);
-    const auto join = [&](const unsigned int a, const unsigned int b) {
-      const unsigned int one = root_of(parents, a), other = root_of(parents, b);
-      parents[std::max(one, other)] = std::min(one, other);
-    };
+    ConnectedSets             vertices(mesh.n_vertices());
     for (const auto &cell : mesh.cell_iterators_on_level(0))
       for (const unsigned int v : cell->vertex_indices())
-        join(cell->vertex_index(0), cell->vertex_index(v));
+        vertices.join(cell->vertex_index(0), cell->vertex_index(v));
     if (run.scene.cracks.on_faces()) // nodes there are doubled
       {
         const auto is_before = [](const Point<dim> &a, const Point<dim> &b) {
@@ -165,15 +152,15 @@ namespace PeriDeal
         std::map<Point<dim>, unsigned int, decltype(is_before)> places(is_before);
         for (const auto &cell : mesh.cell_iterators_on_level(0))
           for (const unsigned int v : cell->vertex_indices())
-            join(places.emplace(cell->vertex(v), cell->vertex_index(v)).first->second,
-                 cell->vertex_index(v));
+            vertices.join(places.emplace(cell->vertex(v), cell->vertex_index(v)).first->second,
+                          cell->vertex_index(v));
       }
     std::map<unsigned int, unsigned int> numbers;
     std::vector<double>                  volumes;
     of_coarse.resize(mesh.n_cells(0));
     for (const auto &cell : mesh.cell_iterators_on_level(0))
       {
-        const unsigned int root  = root_of(parents, cell->vertex_index(0));
+        const unsigned int root  = vertices.root(cell->vertex_index(0));
         const unsigned int piece = numbers.emplace(root, numbers.size()).first->second;
         of_coarse[cell->index()] = piece;
         volumes.resize(numbers.size());

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <perideal/base/clipped.h>
 #include <perideal/scene/cracks.h>
 #include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
@@ -30,28 +31,6 @@ namespace PeriDeal
       if (n < crack.size())
         name += " ; ... " + std::to_string(crack.size()) + " corners";
       return name + ")";
-    }
-
-
-    /** The part of a polygon (or of a segment: two corners) in the half space sign * x_d <= sign *
-     * bound. */
-    template <int dim>
-    std::vector<Point<dim>> clipped(const std::vector<Point<dim>> &polygon,
-                                    const unsigned int             d,
-                                    const double                   bound,
-                                    const double                   sign)
-    {
-      std::vector<Point<dim>> result;
-      for (unsigned int i = 0; i < polygon.size(); ++i)
-        {
-          const Point<dim> &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-          const double      depth_a = sign * (bound - a[d]), depth_b = sign * (bound - b[d]);
-          if (depth_a >= 0.)
-            result.push_back(a);
-          if ((depth_a > 0. && depth_b < 0.) || (depth_a < 0. && depth_b > 0.))
-            result.push_back(a + depth_a / (depth_a - depth_b) * (b - a));
-        }
-      return result;
     }
 
 
@@ -331,9 +310,7 @@ namespace PeriDeal
   {
     for (unsigned int i = 0; i < cracks.size(); ++i)
       {
-        std::vector<Point<dim>> inside = cracks[i];
-        for (unsigned int d = 0; d < dim; ++d)
-          inside = clipped<dim>(clipped<dim>(inside, d, upper[d], 1.), d, lower[d], -1.);
+        const std::vector<Point<dim>> inside = clipped_to_box(cracks[i], lower, upper);
         const bool grows =
           std::any_of(tips.begin(), tips.end(), [&](const auto &tip) { return tip.crack == i; });
         if (inside.empty() && !grows)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/clipped.h>
 #include <perideal/scene/holes.h>
 
 #include <algorithm>
@@ -18,23 +19,7 @@ namespace PeriDeal
     /** What of a polygon lies in a box. Pieces of it hang together along the sides of the box. */
     Hole part_in_box(Hole polygon, const Point<2> &lower, const Point<2> &upper)
     {
-      for (unsigned int d = 0; d < 2; ++d)
-        for (const bool up : {false, true})
-          {
-            const double          bound = up ? upper[d] : lower[d];
-            const auto            is_in = [&](const Point<2> &p) { return (p[d] < bound) == up; };
-            std::vector<Point<2>> corners;
-            for (std::size_t i = 0; i < polygon.corners.size(); ++i)
-              {
-                const Point<2> &a = polygon.corners[i],
-                               &b = polygon.corners[(i + 1) % polygon.corners.size()];
-                if (is_in(a))
-                  corners.push_back(a);
-                if (is_in(a) != is_in(b))
-                  corners.push_back(a + (bound - a[d]) / (b[d] - a[d]) * (b - a));
-              }
-            polygon.corners.swap(corners);
-          }
+      polygon.corners = clipped_to_box(std::move(polygon.corners), lower, upper);
       return polygon;
     }
 

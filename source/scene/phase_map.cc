@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/connected_sets.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/phase_map.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace PeriDeal
 {
@@ -302,27 +302,18 @@ namespace PeriDeal
 
   std::vector<int> PhaseMap::parts(const std::vector<std::array<int, 2>> &offsets) const
   {
-    std::vector<std::size_t> parent(phases.size());
-    std::iota(parent.begin(), parent.end(), std::size_t(0));
-    const auto root = [&](std::size_t c) {
-      while (parent[c] != c)
-        c = parent[c] = parent[parent[c]];
-      return c;
-    };
+    ConnectedSets sets(phases.size());
     for (unsigned int j = 0; j < n_cells[1]; ++j)
       for (unsigned int i = 0; i < n_cells[0]; ++i)
         if (phases[index(i, j)] != empty)
           for (const auto &offset : offsets)
             if (const int k = i + offset[0], l = j + offset[1]; phase(k, l) != empty)
-              {
-                const std::size_t a = root(index(i, j)), b = root(index(k, l));
-                parent[std::max(a, b)] = std::min(a, b);
-              }
+              sets.join(index(i, j), index(k, l));
     std::vector<int> part(phases.size(), -1);
     int              n = 0;
     for (std::size_t c = 0; c < phases.size(); ++c)
       if (phases[c] != empty)
-        part[c] = root(c) == c ? n++ : part[root(c)]; // the root is the lowest of its part
+        part[c] = sets.root(c) == c ? n++ : part[sets.root(c)]; // the root is the lowest
     return part;
   }
 

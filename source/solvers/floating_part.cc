@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/base/connected_sets.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/surface_transfer.h>
@@ -14,7 +15,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <vector>
@@ -25,37 +25,6 @@ namespace PeriDeal
 
   namespace
   {
-    /**
-     * Sets of connected unknowns of this process and its ghosts; the root of a set is its lowest
-     * member.
-     */
-    class ConnectedSets
-    {
-    public:
-      explicit ConnectedSets(const unsigned int n)
-        : parent(n)
-      {
-        std::iota(parent.begin(), parent.end(), 0u);
-      }
-
-      unsigned int root(unsigned int i)
-      {
-        while (parent[i] != i)
-          i = parent[i] = parent[parent[i]];
-        return i;
-      }
-
-      void join(const unsigned int i, const unsigned int j)
-      {
-        const unsigned int a = root(i), b = root(j);
-        parent[std::max(a, b)] = std::min(a, b);
-      }
-
-    private:
-      std::vector<unsigned int> parent;
-    };
-
-
     /** 1 on unknowns that are free, 0 elsewhere. */
     Vector free_unknowns(const Operator &op)
     {

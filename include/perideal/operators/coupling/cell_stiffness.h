@@ -87,7 +87,7 @@ namespace PeriDeal
         }
       return list;
     }();
-    double              reach  = 0.;
+    double reach = 0.;
     for (unsigned int v = 1; v < n_corners; ++v)
       reach = std::max(reach, corners[0].distance(corners[v]));
     const bool parted = std::any_of(cracks.begin(), cracks.end(), [&](const auto &crack) {
