@@ -24,9 +24,9 @@ namespace PeriDeal
    * Of the sides left, right, bottom, top, back, front. With `Surface correction = fictitious
    * nodes` all go on. With `auto` they do where the scene allows, for `Models = peridynamics`; in
    * motion, where bonds may break, and along directions in which a body without holes on a lattice
-   * is a third as long as along another one or less, those without conditions do in part: the nodes
-   * that fictitious ones follow are stiff, at corners most, and explicit steps would be short; and
-   * slender bodies would be too stiff in bending. Not collective.
+   * is a third as long as along another one or less, and 16 horizons at most, those without
+   * conditions do in part: the nodes that fictitious ones follow are stiff, at corners most, and
+   * explicit steps would be short; and slender bodies would bend too little. Not collective.
    */
   template <int dim>
   std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);
