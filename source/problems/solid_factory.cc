@@ -173,6 +173,7 @@ namespace PeriDeal
         note_locking(scene, highest, notes);
         note_tips_in_cells(scene, notes);
         note_slender_cracks(scene, notes);
+        note_loaded_holes(scene, notes);
         note_slow_oblique_cracks(scene, notes);
         note_growth(scene, notes);
       }

@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
-
 
 namespace PeriDeal
 {
@@ -230,6 +230,44 @@ namespace PeriDeal
 
 
   template <int dim>
+  void note_loaded_holes(const Scene<dim> &scene, std::vector<std::string> &notes)
+  {
+    const auto &conditions = scene.boundary_conditions;
+    if (dim == 1 || !scene.domain.has_lattice() ||
+        std::none_of(conditions.traction.begin(),
+                     conditions.traction.end(),
+                     [&](const VectorCondition &condition) {
+                       return conditions.side_of(condition.id) == hole_boundary_id;
+                     }))
+      return;
+    // The radius of the circle of the same area, of holes that are about as long as wide.
+    const Holes<dim> &holes  = scene.domain.holes;
+    double            radius = holes.has_one ? holes.radius : std::numeric_limits<double>::max();
+    for (const Hole &hole : holes.listed)
+      if (const auto [low, high] = hole.box();
+          !hole.text.empty() && hole.area() > 0.3 * low.distance_square(high) / 2.)
+        radius = std::min(radius, std::sqrt(hole.area() / numbers::PI));
+    const Tensor<1, dim> h     = scene.domain.spacing();
+    const double         cells = radius / std::max(h[0], h[std::min(1, dim - 1)]);
+    // Measured (doc/parts.md).
+    std::vector<std::string> parts;
+    const auto               add = [&](const ModelKind kind, const double share) {
+      if (runs(scene, kind) && share >= 0.05 * cells)
+        parts.push_back(rounded_text(100. * share / cells) + " % (" + to_string(kind) + ")");
+    };
+    add(ModelKind::finite_elements, 0.6);
+    add(ModelKind::coupled, 0.6);
+    add(ModelKind::peridynamics, 1.5);
+    if (!parts.empty())
+      notes.push_back(
+        "A hole with a load on its rim has " + rounded_text(cells) +
+        " cells to its radius, and stairs of cells in place of the rim. What acts there is that of the true rim, but circular bores under pressure were found up to " +
+        join_names(parts) +
+        " too wide at their rims. Twice as many cells halve that; on a mesh from a file faces can lie on the rim.");
+  }
+
+
+  template <int dim>
   void note_slow_oblique_cracks(const Scene<dim> &scene, std::vector<std::string> &notes)
   {
     constexpr double from = 3., to = 42.; // degrees
@@ -424,6 +462,7 @@ namespace PeriDeal
   template void        note_locking(const Scene<dim> &, const double, std::vector<std::string> &); \
   template void        note_tips_in_cells(const Scene<dim> &, std::vector<std::string> &);         \
   template void        note_slender_cracks(const Scene<dim> &, std::vector<std::string> &);        \
+  template void        note_loaded_holes(const Scene<dim> &, std::vector<std::string> &);          \
   template void        note_slow_oblique_cracks(const Scene<dim> &, std::vector<std::string> &);   \
   template std::string note_on_few_bonds(const Scene<dim> &,                                       \
                                          const std::vector<FamilyMember<dim>> &);                  \

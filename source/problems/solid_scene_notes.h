@@ -34,6 +34,10 @@ namespace PeriDeal
   template <int dim>
   void note_slender_cracks(const Scene<dim> &scene, std::vector<std::string> &notes);
 
+  /** Round holes of few cells with a load on their rim: how much too wide they get, by models. */
+  template <int dim>
+  void note_loaded_holes(const Scene<dim> &scene, std::vector<std::string> &notes);
+
   /** Cracks at an angle to the rows of nodes, from which bonds break in groups. */
   template <int dim>
   void note_slow_oblique_cracks(const Scene<dim> &scene, std::vector<std::string> &notes);

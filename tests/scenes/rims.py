@@ -4,9 +4,11 @@
 
     rims.py heat
     rims.py thin    slits about a cell wide at an angle, stars, ellipses
+    rims.py pressed
 """
 
 import math
+import re
 
 from scene_test import BC, COUPLED, FE, PD, check, check_close, run_parts, run_scene, scene_text
 
@@ -123,5 +125,27 @@ def thin():
             check_close(-run.model(model)["boundary flux"][side], 8 / math.cos(math.radians(20)), relative=1e-9, what=f"{model}: what one side of a slit has leaves through {side}")
 
 
+def pressed():
+    """Pressure on circular holes of few cells: what is left is told, twofold, at the rim."""
+    quarter = {"Domain/Upper corner": "3, 3", "Domain/Holes": "circle: 0, 0, 1", BC + "Displacement": "", BC + "Symmetry": "left, bottom", BC + "Traction": "hole: x, y",
+               "Output/Probes": "0, 1", "Models": f"{FE}, {PD}"}
+
+    def wide(cells, **more):
+        run = run_scene(PULL, {**quarter, "Domain/Cells": f"{3 * cells}, {3 * cells}", **more})
+        return run, {model: run.rows(model)[0]["uy"] for model in run.summary["models"]}
+
+    right = wide(48, Models=FE)[1][FE]
+    for cells in (3, 5, 8):
+        run, found = wide(cells)
+        note = [n for n in run.summary["notes"] if "on its rim" in n]
+        said = {model: float(share) / 100 for share, model in re.findall(r"([0-9.]+) % \(([a-z ]+)\)", note[0])}
+        for model in (FE, PD):
+            gap = found[model] / right - 1
+            print(f"  {cells} cells to a radius, {model}: {100 * gap:+.1f} %, told {100 * said[model]:.1f}")
+            check(abs(gap) < said[model], f"{cells} cells, {model}: {gap} is more than the note tells: {note}")
+        check(found[PD] / right - 1 > 0.5 * said[PD], f"{cells} cells: {found[PD] / right - 1} is less than half of what the note tells: {note}")
+    check(not any("on its rim" in n for n in wide(31)[0].summary["notes"]), "no note on fine rims")
+
+
 if __name__ == "__main__":
-    run_parts(heat, thin)
+    run_parts(heat, thin, pressed)
