@@ -226,7 +226,9 @@ namespace PeriDeal
         if (std::find(known.begin(), known.end(), name) != known.end() ||
             name.find_first_not_of("0123456789") == std::string::npos)
           entry_error(at, "is the name of a side. Give the part another one.");
-        if (std::any_of(parts.begin(), parts.end(), [&](const Part &p) { return p.name == name; }))
+        if (std::any_of(parts.begin(), parts.end(), [part_name = name](const Part &p) {
+              return p.name == part_name;
+            }))
           error(entry, "the part '" + name + "' is named twice.");
         const PartText of = split_part(value, at);
         Part           part;
