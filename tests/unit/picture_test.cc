@@ -29,6 +29,7 @@ namespace
     std::string bytes;
     png_structp png  = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop   info = png_create_info_struct(png);
+    png_set_check_for_invalid_index(png, 0); // newer ones would not write it
     png_set_write_fn(
       png,
       &bytes,
@@ -176,10 +177,10 @@ TEST(Picture, mistakes)
   expect_fault(png.substr(0, 20), {"cut short"});
   expect_fault(png.substr(0, png.size() - 30), {"cut short"});
   std::string broken = png;
-  broken[png.size() - 25] ^= 0x55;
+  broken[png.find("IDAT") + 7] ^= 0x55; // behind the last row newer libpng looks at nothing
   expect_fault(broken, {"broken PNG"});
   std::string checksum = png;
-  checksum.back() ^= 1;
+  checksum[29] ^= 1; // of the head
   expect_fault(checksum, {"broken PNG"});
   const std::vector<png_color> palette{{255, 0, 0}, {0, 255, 0}, {10, 20, 30}};
   expect_fault(png_file(PNG_COLOR_TYPE_PALETTE, 2, 3, {{0x1C}}, palette),
