@@ -240,12 +240,17 @@ namespace PeriDeal
                        return conditions.side_of(condition.id) == hole_boundary_id;
                      }))
       return;
-    // The radius of the circle of the same area, of holes that are about as long as wide.
+    // The radius of the circle of the same area, of holes that are about as long as wide and have
+    // a side that is not along the cells.
     const Holes<dim> &holes  = scene.domain.holes;
-    double            radius = holes.has_one ? holes.radius : std::numeric_limits<double>::max();
+    double            radius = std::numeric_limits<double>::max();
+    if (holes.has_one &&
+        (holes.shape == HoleShape::circle || std::abs(std::remainder(holes.angle, 90.)) > 1e-9))
+      radius = holes.radius;
     for (const Hole &hole : holes.listed)
       if (const auto [low, high] = hole.box();
-          !hole.text.empty() && hole.area() > 0.3 * low.distance_square(high) / 2.)
+          !hole.text.empty() && hole.area() > 0.3 * low.distance_square(high) / 2. &&
+          hole.area() < (1. - 1e-9) * (high[0] - low[0]) * (high[1] - low[1]))
         radius = std::min(radius, std::sqrt(hole.area() / numbers::PI));
     const Tensor<1, dim> h     = scene.domain.spacing();
     const double         cells = radius / std::max(h[0], h[std::min(1, dim - 1)]);
@@ -399,7 +404,8 @@ namespace PeriDeal
     if (std::max(bent, twisted) < tolerable)
       return {};
     const std::string in_bending =
-      bent < tolerable ? "" : rounded_text(1. + bent) + " times as stiff as it should be in bending";
+      bent < tolerable ? "" :
+                         rounded_text(1. + bent) + " times as stiff as it should be in bending";
     const std::string in_torsion =
       twisted < tolerable ?
         "" :

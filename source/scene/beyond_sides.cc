@@ -43,7 +43,7 @@ namespace PeriDeal
      * Directions along which a body on a lattice, without holes, is a third as long as along
      * another one or less, and 16 horizons at most, with its mirror image at planes of symmetry:
      * where a strip, bar or plate is thin. What a linear continuation adds beyond free sides makes
-     * it too stiff in bending, by less than 0.3 % where it is thicker; stresses at free sides are
+     * it too stiff in bending, by at most 0.4 % where it is thicker; stresses at free sides are
      * the more accurate with it.
      */
     template <int dim>

@@ -144,7 +144,8 @@ def pressed():
             print(f"  {cells} cells to a radius, {model}: {100 * gap:+.1f} %, told {100 * said[model]:.1f}")
             check(abs(gap) < said[model], f"{cells} cells, {model}: {gap} is more than the note tells: {note}")
         check(found[PD] / right - 1 > 0.5 * said[PD], f"{cells} cells: {found[PD] / right - 1} is less than half of what the note tells: {note}")
-    check(not any("on its rim" in n for n in wide(31)[0].summary["notes"]), "no note on fine rims")
+    for what, run in (("fine", wide(31)[0]), ("straight", wide(4, **{"Domain/Holes": "rectangle: -1, -1, 1, 1"})[0])):
+        check(not any("on its rim" in n for n in run.summary["notes"]), f"no note on {what} rims")
 
 
 if __name__ == "__main__":
