@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/matrix_product.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bounds/spectrum.h>
 
@@ -189,7 +190,7 @@ namespace PeriDeal
       if constexpr (std::is_same_v<OperatorType, ElasticElements<dim>>)
         {
           Vector y(noise);
-          matrix.vmult(y, noise);
+          MatrixProduct(matrix).vmult(y, noise);
           double largest = 0.;
           for (const Vector &motion : op.near_null_space())
             largest =

@@ -6,6 +6,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_gmres.h>
 
+#include <perideal/base/matrix_product.h>
 #include <perideal/base/matrix_rows.h>
 
 #include <algorithm>
@@ -76,14 +77,14 @@ namespace PeriDeal
     try
       {
         if (symmetric)
-          SolverCG<Vector>(control).solve(inner, x, b, preconditioner);
+          SolverCG<Vector>(control).solve(MatrixProduct(inner), x, b, preconditioner);
         else
           {
             // Preconditioned from the right: from the left it would be the preconditioned residual,
             // of another unit than b, that is compared with the size of b.
             SolverGMRES<Vector>::AdditionalData data;
             data.right_preconditioning = true;
-            SolverGMRES<Vector>(control, data).solve(inner, x, b, preconditioner);
+            SolverGMRES<Vector>(control, data).solve(MatrixProduct(inner), x, b, preconditioner);
           }
       }
     catch (const SolverControl::NoConvergence &)
@@ -94,8 +95,8 @@ namespace PeriDeal
   double HeldSystem::patch_error(const Vector &u) const
   {
     Vector defect(held.get_partitioner()), error(held.get_partitioner());
-    matrix.vmult(defect, u);
-    elements.vmult(error, u);
+    MatrixProduct(matrix).vmult(defect, u);
+    MatrixProduct(elements).vmult(error, u);
     defect -= error;
     clear_held(defect);
     solve(error, defect);
@@ -112,8 +113,8 @@ namespace PeriDeal
         x = noise;
         for (double &value : x)
           value = std::sin(trial * 10. * value);
-        matrix.vmult(ahead, x);
-        matrix.Tvmult(back, x);
+        MatrixProduct(matrix).vmult(ahead, x);
+        MatrixProduct(matrix).Tvmult(back, x);
         const double size = std::max(ahead.linfty_norm(), back.linfty_norm());
         back -= ahead;
         largest = std::max(largest, back.linfty_norm() / size);
@@ -135,7 +136,7 @@ namespace PeriDeal
         if (const double size = x.l2_norm(); size > 0.)
           x /= size;
       }
-    inner.vmult(y, x);
+    MatrixProduct(inner).vmult(y, x);
     const double energy = x * y;
     y                   = x;
     y.scale(capacity);

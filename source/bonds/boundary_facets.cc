@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -29,7 +30,7 @@ namespace PeriDeal
     , bins(reach)
   {
     for (const BoundaryFacet<dim> &facet : gather_boundary_facets(nodes.dof_handler()))
-      facets.push_back({facet, goes_on(facet.side), {}});
+      facets.push_back({facet, goes_on(facet.side), false, {}});
     take_out_planes(symmetry);
     bins = bins_of_facets<dim>(facets, reach);
     find_corner_normals();
@@ -101,6 +102,103 @@ namespace PeriDeal
   {
     return symmetry_planes;
   }
+
+  template <int dim>
+  double BoundaryFacets<dim>::extent() const
+  {
+    Point<dim> lower, upper;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        lower[d] = std::numeric_limits<double>::max();
+        upper[d] = -lower[d];
+      }
+    for (const Facet &facet : facets)
+      for (const Point<dim> &corner : facet.corners)
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            lower[d] = std::min(lower[d], corner[d]);
+            upper[d] = std::max(upper[d], corner[d]);
+          }
+    Tensor<1, dim> size = upper - lower;
+    for (const SymmetryPlane &plane : symmetry_planes)
+      size[plane.axis] *= 2.;
+    return *std::max_element(size.begin_raw(), size.end_raw());
+  }
+
+
+  template <int dim>
+  bool BoundaryFacets<dim>::is_hollow(const unsigned int facet) const
+  {
+    constexpr double slack = 1e-6;
+    const Facet     &own   = facets[facet];
+    double           bent = 0., size = 0.;
+    for (unsigned int k = 1; k < dim; ++k)
+      {
+        const Tensor<1, dim> edge = own.corners[k] - own.corners[0];
+        bent += (own.corner_normals[k] - own.corner_normals[0]) * edge;
+        size += edge.norm();
+      }
+    return bent < -slack * size;
+  }
+
+
+  template <int dim>
+  double BoundaryFacets<dim>::thickness_behind(const unsigned int facet, const double most) const
+  {
+    constexpr double opposite = 0.5, slack = 1e-3;
+    const Facet     &own    = facets[facet];
+    Point<dim>       middle = own.corners[0];
+    for (unsigned int k = 1; k < dim; ++k)
+      middle += (own.corners[k] - middle) / (k + 1.);
+    double found = std::numeric_limits<double>::infinity();
+    for (double passed = 0.; passed < most && found > passed; passed += reach)
+      {
+        // Beyond a plane of symmetry the way goes on in the body's mirror image: it is folded.
+        Point<dim>     start = middle;
+        Tensor<1, dim> way   = -own.normal;
+        for (const SymmetryPlane &plane : symmetry_planes)
+          if ((start[plane.axis] + passed * way[plane.axis] - plane.at) * (plane.above ? 1. : -1.) >
+              0.)
+            {
+              start[plane.axis] = 2. * plane.at - start[plane.axis];
+              way[plane.axis] *= -1.;
+            }
+        bins.visit_near(start + passed * way, [&](const unsigned int f) {
+          const double slope = facets[f].normal * way;
+          if (slope < opposite)
+            return;
+          const double     length = facets[f].normal * (facets[f].corners[0] - start) / slope;
+          const Point<dim> at     = start + length * way;
+          if (length > slack * reach && length < found && foot_on(at, f).distance < slack * reach)
+            found = length;
+        });
+      }
+    return found < most ? found : std::numeric_limits<double>::infinity();
+  }
+
+
+  template <int dim>
+  double BoundaryFacets<dim>::go_on_in_part(
+    const std::function<bool(const types::boundary_id)> &free,
+    const double                                         most)
+  {
+    constexpr double of_hollow = 0.6;
+    const double     widest    = extent() / 2.;
+    double           thinnest  = std::numeric_limits<double>::infinity();
+    for (unsigned int f = 0; f < facets.size(); ++f)
+      if (free(facets[f].side))
+        {
+          const double limit =
+            (1. - 1e-6) * std::min((is_hollow(f) ? of_hollow : 1.) * most, widest);
+          if (const double thickness = thickness_behind(f, limit); thickness < limit)
+            {
+              facets[f].in_part = true;
+              thinnest          = std::min(thinnest, thickness);
+            }
+        }
+    return thinnest;
+  }
+
 
   template <int dim>
   types::global_dof_index BoundaryFacets<dim>::node(const unsigned int facet,
@@ -250,6 +348,16 @@ namespace PeriDeal
                 foot = found;
             }
     return foot;
+  }
+
+
+  template <int dim>
+  double BoundaryFacets<dim>::share(const std::vector<Foot> &through) const
+  {
+    const auto n_free = std::count_if(through.begin(), through.end(), [&](const Foot &foot) {
+      return facets[foot.facet].in_part;
+    });
+    return n_free == 0 ? 1. : n_free > 1 ? 0. : through.size() > 1 ? 0.075 : 0.15;
   }
 
 

@@ -111,6 +111,9 @@ namespace PeriDeal
               farthest = std::max(farthest, foot.distance);
               through.push_back(foot);
             }
+        image.volume *= facets.share(through);
+        if (image.volume <= 0.)
+          return;
         for (const Part &part : parts)
           image.place += part.factor * part.place;
         // Beyond reentrant corners and narrow gaps there are other sides, or the body itself.
@@ -325,13 +328,16 @@ namespace PeriDeal
     const Nodes<dim>                                    &nodes,
     const std::vector<types::boundary_id>               &symmetry,
     const std::function<bool(const types::boundary_id)> &goes_on,
-    const double                                         reach)
+    const double                                         reach,
+    ThinParts                                           *thin)
   {
     std::vector<BoundaryImage<dim>> images;
     if constexpr (dim > 1)
       {
-        const BoundaryFacets<dim> facets(nodes, symmetry, goes_on, reach);
-        const ImageFinder<dim>    finder(nodes, facets, reach);
+        BoundaryFacets<dim> facets(nodes, symmetry, goes_on, reach);
+        if (thin != nullptr)
+          thin->thinnest = facets.go_on_in_part(thin->sides, thin->most);
+        const ImageFinder<dim> finder(nodes, facets, reach);
         for (unsigned int m = 0; m < nodes.n_local(); ++m)
           finder.find(m, images);
         for (const SymmetryPlane &plane : facets.planes())
@@ -346,7 +352,8 @@ namespace PeriDeal
     const Nodes<dim> &,                                     \
     const std::vector<types::boundary_id> &,                \
     const std::function<bool(const types::boundary_id)> &,  \
-    const double);
+    const double,                                           \
+    ThinParts *);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

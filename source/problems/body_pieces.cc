@@ -386,8 +386,7 @@ namespace PeriDeal
     message << ": the one about " << place_text(middles[deep.corner.piece]) << ", with its corner "
             << place_text(deep.corner.at) << " displaced to " << place_text(deep.corner.now)
             << ", is " << rounded_text(deep.depth) << " deep in the one about "
-            << place_text(middles[deep.other])
-            << ". No cells join them, and at rest separate pieces do not press on each other; ";
+            << place_text(middles[deep.other]) << ". No cells join them, and ";
     return message.str();
   }
 
@@ -398,13 +397,17 @@ namespace PeriDeal
     const Overlap deep = n_pieces < 2 ? Overlap() : deepest(Displacement(run));
     if (deep.depth == 0.)
       return "";
+    if (run.stepper)
+      return text(deep, t) +
+             "with small displacements separate pieces do not press on each other: they pass through each other. With 'Models = peridynamics' and 'Kinematics = full' in section 'Elasticity' they press.";
+    const std::string at_rest = "at rest separate pieces do not press on each other; ";
     AssertThrow(
       run.scene.elasticity.text("Contact") == "false",
       UserError(
-        start + text(deep, t) +
+        start + text(deep, t) + at_rest +
         "in motion they do, by 'Models = peridynamics' with 'Solver = dynamics' and 'Kinematics = full' in section 'Elasticity'. Use that, load them so that they do not meet (with 'Kinematics = linear' all results go with the load, so that a small one will do), join them by cells, "
         "or let them pass through each other: 'Contact = false' in section 'Elasticity', which holds for the faces of cracks, too."));
-    return text(deep, t) +
+    return text(deep, t) + at_rest +
            "'Contact = false' in section 'Elasticity' lets them pass through each other.";
   }
 

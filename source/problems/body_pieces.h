@@ -15,8 +15,9 @@
 namespace PeriDeal
 {
   /**
-   * The pieces of a body at rest that no cells hold together, as blocks of a mesh file or phases
-   * apart by voids, and whether a displacement lets them overlap: nothing is between them at rest.
+   * The pieces of a body that no cells hold together, as blocks of a mesh file or phases apart by
+   * voids, and whether a displacement lets them overlap: nothing is between them at rest, nor in
+   * motion with small displacements.
    * What cracks cut is one piece; faces of cracks have a contact of their own (SolidContact).
    *
    * Looked for are corners of the surface of one piece that lie in cells of another one, both
@@ -31,9 +32,9 @@ namespace PeriDeal
     explicit BodyPieces(const SolidProblem<dim> &run);
 
     /**
-     * Where pieces overlap in the equilibrium at t, as the end of a note that begins with @p start;
-     * empty: nowhere. Nothing is done if the body is one piece. Collective. Throws UserError, with
-     * that start, unless `Contact = false` allows it.
+     * Where pieces overlap at t, as the end of a note that begins with @p start; empty: nowhere.
+     * Nothing is done if the body is one piece. Collective. Throws UserError, with that start, of
+     * equilibria, unless `Contact = false` allows it.
      */
     std::string overlap(const double t, const std::string &start) const;
 

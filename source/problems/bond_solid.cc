@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "diffusion_parts.h"
 #include "solid_fields.h"
@@ -42,6 +43,15 @@ namespace PeriDeal
         const SolidBonds<dim> &bonds = states->bonds();
         if (families_end(scene))
           stiffer = surface_stiffness(bonds.families, bonds.laws, bonds.rows, bonds.beyond.get());
+        if (bonds.thinnest < std::numeric_limits<double>::infinity())
+          {
+            double volume = 0.;
+            for (unsigned int i = 0; i < node_set->n_owned(); ++i)
+              volume += node_set->volume(i);
+            spacing = std::pow(Utilities::MPI::sum(volume, handler.get_communicator()) /
+                                 handler.get_triangulation().n_global_active_cells(),
+                               1. / dim);
+          }
       }
 
       std::string name() const override
@@ -274,11 +284,17 @@ namespace PeriDeal
             entry +
             "has not found all factors: moments of families differ from those of a complete one by up to " +
             number_text(states->bonds().rows.moments_gap) + " of them.");
-        const auto &family = states->bonds().families.weights().members();
-        for (const std::string &note : {note_on_few_bonds(scene, family),
-                                        note_on_bending(scene),
-                                        states->brittle() ? note_on_trapping(scene, family) : "",
-                                        note_on_critical_stretch()})
+        const auto  &family   = states->bonds().families.weights().members();
+        const double thinnest = states->bonds().thinnest;
+        for (const std::string &note :
+             {note_on_few_bonds(scene, family),
+              note_on_bending(scene),
+              spacing > 0. ? note_on_thin_parts(thinnest / spacing,
+                                                scene.horizon() / spacing,
+                                                completes_at_surfaces<dim>(scene)) :
+                             "",
+              states->brittle() ? note_on_trapping(scene, family) : "",
+              note_on_critical_stretch()})
           if (!note.empty())
             list.push_back(note);
         return list;
@@ -359,7 +375,8 @@ namespace PeriDeal
       const DoFHandler<dim>              &handler;
       Nodes<dim>                         *node_set = nullptr; // of the model
       std::unique_ptr<StateOperator<dim>> states;
-      Tensor<1, dim>                      stiffer; // by families that end, along the axes
+      Tensor<1, dim>                      stiffer;      // by families that end, along the axes
+      double                              spacing = 0.; // of a mesh with thin parts
     };
   } // namespace
 

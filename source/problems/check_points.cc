@@ -8,6 +8,7 @@
 #include <perideal/base/point_order.h>
 #include <perideal/base/user_error.h>
 #include <perideal/problems/check_sides.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <limits>

@@ -11,6 +11,9 @@
 namespace PeriDeal
 {
   template <int dim>
+  struct Scene;
+
+  template <int dim>
   class SolidProblem;
 
   /** Of the owned nodes, what its heat problem has found less `Reference temperature`. */

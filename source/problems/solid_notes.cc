@@ -206,6 +206,24 @@ namespace PeriDeal
     }
 
 
+    /** A note that begins so is there. */
+    bool is_told(const std::string &start, const RunContext &context)
+    {
+      const std::vector<std::string> &notes = context.record.notes;
+      return std::any_of(notes.begin(), notes.end(), [&](const std::string &note) {
+        return note.compare(0, start.size(), start) == 0;
+      });
+    }
+
+
+    /** A note, unless one begins so or there is nothing to say. */
+    void tell(const std::string &start, const std::string &rest, const RunContext &context)
+    {
+      if (!rest.empty() && !is_told(start, context))
+        context.record.notes.push_back(start + rest);
+    }
+
+
     /** A negative K_I is that of faces that are pressed together. */
     template <int dim>
     void note_pressed_faces(const SolidProblem<dim> &run, const RunContext &context)
@@ -258,27 +276,29 @@ namespace PeriDeal
 
 
   template <int dim>
+  void note_overlap(const SolidProblem<dim> &run, const double t, const RunContext &context)
+  {
+    if (run.scene.domain.has_lattice() && !run.scene.domain.has_voids())
+      return;
+    const std::string start =
+      run.name() + ": pieces of the body overlap" + (run.stepper ? "" : " in the equilibrium");
+    if (!is_told(start, context))
+      tell(start, BodyPieces<dim>(run).overlap(t, start), context);
+  }
+
+
+  template <int dim>
   void note_equilibrium(const SolidProblem<dim> &run, const double t, const RunContext &context)
   {
-    std::vector<std::string> &notes = context.record.notes;
-    const auto                keep  = [&](const std::string &start, const std::string &rest) {
-      const bool is_there = std::any_of(notes.begin(), notes.end(), [&](const std::string &note) {
-        return note.compare(0, start.size(), start) == 0;
-      });
-      if (!is_there && !rest.empty())
-        notes.push_back(start + rest);
-      return is_there;
-    };
     if (const double residual = take_accepted_residual(); residual > 0.)
-      keep(
+      tell(
         run.name() + ": the residual of an equilibrium fell no further than to ",
         rounded_text(residual) +
           " of that of the loads, above 'Tolerance' = " + number_text(run.scene.solver.tolerance) +
           " in section 'Solver', and was accepted: round-off of the forces between nodes allows no less, since they move far more than they stretch what is between them. "
-          "A larger 'Tolerance' takes fewer iterations; fewer cells, or a body that is held so that it moves less as a whole, leave less of it.");
-    const std::string overlap = run.name() + ": pieces of the body overlap in the equilibrium";
-    if (!keep(overlap, ""))
-      keep(overlap, BodyPieces<dim>(run).overlap(t, overlap));
+          "A larger 'Tolerance' takes fewer iterations; fewer cells, or a body that is held so that it moves less as a whole, leave less of it.",
+        context);
+    note_overlap(run, t, context);
   }
 
 
@@ -299,6 +319,7 @@ namespace PeriDeal
 
 
 #define PERIDEAL_INSTANTIATE(dim)                                                              \
+  template void note_overlap(const SolidProblem<dim> &, const double, const RunContext &);     \
   template void note_equilibrium(const SolidProblem<dim> &, const double, const RunContext &); \
   template void tell_first_break(const SolidProblem<dim> &, const double, const RunContext &); \
   template void note_end(const SolidProblem<dim> &, const RunContext &);

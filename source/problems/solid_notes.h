@@ -13,6 +13,13 @@ namespace PeriDeal
   void tell_first_break(const SolidProblem<dim> &run, const double t, const RunContext &context);
 
   /**
+   * That pieces of the body overlap (BodyPieces) at t; said once. Collective. Throws UserError, at
+   * rest.
+   */
+  template <int dim>
+  void note_overlap(const SolidProblem<dim> &run, const double t, const RunContext &context);
+
+  /**
    * What is wrong with the equilibrium that has been found at t: pieces of the body that overlap
    * (BodyPieces), a residual that round-off keeps above the tolerance; each is said once.
    * Collective. Throws UserError.

@@ -289,6 +289,8 @@ namespace PeriDeal
           context.after_step(next);
       }
     span.is_open = false;
+    if (!scene.elasticity.has_full_kinematics())
+      note_overlap(*this, to, context);
   }
 
 

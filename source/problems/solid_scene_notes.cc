@@ -419,6 +419,23 @@ namespace PeriDeal
   }
 
 
+  std::string note_on_thin_parts(const double n_cells, const double m, const bool ends)
+  {
+    constexpr double tolerable = 0.05;
+    const double more = ends ? 0.3 * std::pow(2. / n_cells, 8.) :
+                               0.045 * std::pow(m / 3., 1.4) * std::pow(4. / n_cells, 3.8),
+                 less = ends ? std::min(0.15, 0.24 * (m - 2.4) / n_cells) :
+                               0.5 * (m / 3. - 1.) / n_cells;
+    if (more < tolerable && less < tolerable)
+      return {};
+    return "behind free sides this mesh is " + rounded_text(n_cells) +
+           " cells thick where it is thinnest. With m = " + rounded_text(m) +
+           " strips of that thickness are about " +
+           rounded_text(more < tolerable ? 1. - less : 1. + more) +
+           " times as stiff as they should be in bending (not where they are pulled). Smaller cells, with a smaller 'Horizon' in section 'Peridynamics', make that less; 'Models = finite elements' has none of it.";
+  }
+
+
   template <int dim>
   std::string note_on_trapping(const Scene<dim>                     &scene,
                                const std::vector<FamilyMember<dim>> &family)

@@ -54,6 +54,14 @@ namespace PeriDeal
   template <int dim>
   std::string note_on_bending(const Scene<dim> &scene);
 
+  /**
+   * The same of a mesh from a file, as measured (doc/elasticity.md).
+   * @param n_cells what of it is thinnest, in cells of mean size
+   * @param m       of these
+   * @param ends    families end at free sides, since bonds may break or in motion
+   */
+  std::string note_on_thin_parts(const double n_cells, const double m, const bool ends);
+
   /** Cracks that are held back between two rows of nodes. */
   template <int dim>
   std::string note_on_trapping(const Scene<dim>                     &scene,

@@ -206,8 +206,8 @@ namespace PeriDeal
       return beyond;
     const auto &conditions = body.boundary_conditions;
     beyond.fill(!automatic || !takes_own_bonds(body) ? BeyondSide::continued :
-                completes_at_surfaces(body)      ? BeyondSide::in_part :
-                                                   BeyondSide::nothing);
+                completes_at_surfaces(body)          ? BeyondSide::in_part :
+                                                       BeyondSide::nothing);
     for (unsigned int side = 0; side < 2 * dim; ++side)
       if (!takes_steps(body) && !thin_directions(body)[side / 2])
         beyond[side] = BeyondSide::continued;
@@ -273,14 +273,27 @@ namespace PeriDeal
   template <int dim>
   bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side)
   {
-    if (!takes_steps(body))
-      return true;
+    return !takes_steps(body) || !is_free(body, side);
+  }
+
+
+  template <int dim>
+  bool is_free(const BodyParameters<dim> &body, const types::boundary_id side)
+  {
     const auto &conditions = body.boundary_conditions;
     for (const auto *const list : {&conditions.displacement, &conditions.traction})
       for (const VectorCondition &condition : *list)
         if (conditions.side_of(condition.id) == side)
-          return true;
-    return false;
+          return false;
+    return true;
+  }
+
+
+  template <int dim>
+  double thin_on_mesh(const BodyParameters<dim> &body)
+  {
+    constexpr double horizons = 5.;
+    return horizons * body.horizon();
   }
 
 
@@ -292,7 +305,7 @@ namespace PeriDeal
     if (completes_mesh(body))
       return takes_steps(body) ?
                "fictitious nodes beyond sides with conditions, weights of bonds elsewhere" :
-               "fictitious nodes beyond the whole boundary";
+               "fictitious nodes beyond the boundary, weights of bonds at free sides of thin parts";
     const auto               beyond = beyond_sides(body);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -308,9 +321,11 @@ namespace PeriDeal
 
 #define PERIDEAL_INSTANTIATE(dim)                                                                 \
   template Tensor<1, dim> whole_extent(const BodyParameters<dim> &);                              \
-  template bool goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side);   \
-  template bool completes_at_surfaces(const BodyParameters<dim> &);                               \
-  template bool families_end(const BodyParameters<dim> &);                                        \
+  template bool   goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side); \
+  template bool   is_free(const BodyParameters<dim> &body, const types::boundary_id side);        \
+  template double thin_on_mesh(const BodyParameters<dim> &body);                                  \
+  template bool   completes_at_surfaces(const BodyParameters<dim> &);                             \
+  template bool   families_end(const BodyParameters<dim> &);                                      \
   template std::string                     note_on_held_rows(const BodyParameters<dim> &body);    \
   template std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);         \
   template bool                            completes_mesh(const BodyParameters<dim> &body);       \

@@ -310,16 +310,17 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                 \
-  template void     Domain<dim>::declare_image();                 \
-  template void     Domain<dim>::refuse_image_entries() const;    \
-  template void     Domain<dim>::set_size_of_image();             \
-  template void     Domain<dim>::parse_image();                   \
-  template bool     Domain<dim>::has_voids() const;               \
-  template void     Domain<dim>::declare_extra_layers();          \
-  template void     Domain<dim>::parse_extra_layers();            \
-  template bool     Domain<dim>::has_extra_layers() const;        \
-  template bool     Domain<dim>::shows(const Point<dim> &) const; \
+#define PERIDEAL_INSTANTIATE(dim)                                       \
+  template void     Domain<dim>::declare_image();                       \
+  template void     Domain<dim>::refuse_image_entries() const;          \
+  template void     Domain<dim>::set_size_of_image();                   \
+  template void     Domain<dim>::parse_image();                         \
+  template bool     Domain<dim>::has_voids() const;                     \
+  template bool     Domain<dim>::has_cell_at(const Point<dim> &) const; \
+  template void     Domain<dim>::declare_extra_layers();                \
+  template void     Domain<dim>::parse_extra_layers();                  \
+  template bool     Domain<dim>::has_extra_layers() const;              \
+  template bool     Domain<dim>::shows(const Point<dim> &) const;       \
   template PhaseMap Domain<dim>::image_of_body() const;
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)

@@ -190,6 +190,12 @@ def pieces():
     through = run_scene(BLOCKS, {**OPEN, "Models": "finite elements"})
     found = [note for note in through.summary["notes"] if OVERLAP in note]
     check(len(found) == 1 and "is 0.05 deep" in found[0], f"one note where they may pass through each other: {found}")
+    # In motion with small displacements they pass through each other, and a note says so.
+    moves = {"Elasticity/Solver": "dynamics", "Material/Density": "0.01", "Time/Time step": "auto", "Time/Stepper": "verlet"}
+    for case in ({"Models": "finite elements"}, {"Models": "peridynamics"}):
+        for end, n in ((0.4, 0), (1, 1)):
+            found = [note for note in run_scene(BLOCKS, {**case, **moves, "Time/End time": str(end)}).summary["notes"] if OVERLAP in note]
+            check(len(found) == n and all("'Kinematics = full'" in note for note in found), f"{case} in motion until {end}: {found}")
     # A ring around a disc, whose boxes overlap from the start, turned into space, and bars in 1D.
     ring = {"Domain/Lower corner": "-1, -1", "Domain/Upper corner": "1, 1", "Domain/Cells": "40, 40", "Domain/Holes": "", "Models": "finite elements"}
     inner = "rectangle: -0.6, -0.6, 0.6, -0.4 ; rectangle: -0.6, 0.4, 0.6, 0.6 ; rectangle: -0.6, -0.4, -0.4, 0.4 ; rectangle: 0.4, -0.4, 0.6, 0.4"

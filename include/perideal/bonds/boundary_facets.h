@@ -49,6 +49,15 @@ namespace PeriDeal
                    const std::function<bool(const dealii::types::boundary_id)> &goes_on,
                    const double                                                 reach);
 
+    /**
+     * Families go on in part beyond facets of sides that are @p free where the body behind them,
+     * along their normal, is thinner than @p most (at hollow rims, as of holes, than 0.6 of that)
+     * and than half of its extent, all with the mirror image beyond planes of symmetry. Returns the
+     * least thickness behind these, infinity if there are none.
+     */
+    double go_on_in_part(const std::function<bool(const dealii::types::boundary_id)> &free,
+                         const double                                                 most);
+
     const std::vector<SymmetryPlane> &planes() const;
 
     /** Global index and place of a facet's node. */
@@ -79,6 +88,12 @@ namespace PeriDeal
      */
     Foot nearest(const dealii::Point<dim> &p, const unsigned int facet) const;
 
+    /**
+     * Of an image through these facets: what of it counts. 0.15 through one beyond which families
+     * go on in part, half of that where they go on wholly beyond another, nothing through two.
+     */
+    double share(const std::vector<Foot> &through) const;
+
     /** Whether a point of the boundary is nearer than that. */
     bool is_nearer(const dealii::Point<dim> &p, const double distance) const;
 
@@ -91,15 +106,21 @@ namespace PeriDeal
   private:
     struct Facet : BoundaryFacet<dim>
     {
-      bool                                    goes_on;
+      bool                                    goes_on, in_part = false;
       std::array<dealii::Tensor<1, dim>, dim> corner_normals;
     };
 
-    void take_out_planes(const std::vector<dealii::types::boundary_id> &symmetry);
-    void find_corner_normals();
-    Foot foot_on(const dealii::Point<dim> &p, const unsigned int facet) const;
-    bool is_lowest(const dealii::Point<dim> &p, const Foot &foot) const;
-    bool ends_at(const unsigned int facet, const dealii::types::global_dof_index node) const;
+    /** Its centre of curvature lies outside the body. */
+    bool is_hollow(const unsigned int facet) const;
+    /** From the middle of a facet to what lies opposite; more than that is infinity. */
+    double thickness_behind(const unsigned int facet, const double most) const;
+    /** Of the body, with its mirror image. */
+    double extent() const;
+    void   take_out_planes(const std::vector<dealii::types::boundary_id> &symmetry);
+    void   find_corner_normals();
+    Foot   foot_on(const dealii::Point<dim> &p, const unsigned int facet) const;
+    bool   is_lowest(const dealii::Point<dim> &p, const Foot &foot) const;
+    bool   ends_at(const unsigned int facet, const dealii::types::global_dof_index node) const;
 
     double                                 reach;
     std::vector<Facet>                     facets;

@@ -37,6 +37,15 @@ namespace PeriDeal
   double halo_of_images(const double reach);
 
 
+  /** Families go on in part beyond such sides: BoundaryFacets::go_on_in_part(). */
+  struct ThinParts
+  {
+    std::function<bool(const dealii::types::boundary_id)> sides;
+    double                                                most;
+    double                                                thinnest; // found
+  };
+
+
   /**
    * Fictitious nodes beyond the boundary of a mesh, of any shape, for elastic bodies with nodes on
    * vertices. Each node m has an image through its nearest point p of each side within the reach,
@@ -48,7 +57,8 @@ namespace PeriDeal
    * are beyond its middle. At convex edges one side after the other goes on. Images that are nearer
    * to another part of the boundary are left out. Beyond planes of symmetry all is mirrored. A node
    * on a side has images at its own place, the part of its volume that the body lacks there. Beyond
-   * sides that do not go on there are none; in a reentrant corner the others then fill their share.
+   * sides that do not go on there are none, and less volume where @p thin says so; in a reentrant
+   * corner the others then fill their share.
    *
    * Those of the nodes that this process knows. Planes of symmetry are normal to an axis.
    * Collective.
@@ -58,5 +68,6 @@ namespace PeriDeal
     const Nodes<dim>                                            &nodes,
     const std::vector<dealii::types::boundary_id>               &symmetry,
     const std::function<bool(const dealii::types::boundary_id)> &goes_on,
-    const double                                                 reach);
+    const double                                                 reach,
+    ThinParts                                                   *thin = nullptr);
 } // namespace PeriDeal

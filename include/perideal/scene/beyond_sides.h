@@ -68,6 +68,20 @@ namespace PeriDeal
   bool goes_on_beyond(const BodyParameters<dim> &body, const dealii::types::boundary_id side);
 
 
+  /** A side without displacements and tractions. Not collective. */
+  template <int dim>
+  bool is_free(const BodyParameters<dim> &body, const dealii::types::boundary_id side);
+
+
+  /**
+   * On a mesh from a file families go on in part beyond free sides where the body behind them is
+   * thinner than this: what linear continuation adds makes parts that are n cells thick about 1 +
+   * (2.45 + 0.25 m^2)/n^2 times as stiff in bending. Not collective.
+   */
+  template <int dim>
+  double thin_on_mesh(const BodyParameters<dim> &body);
+
+
   /**
    * With `Surface correction = auto`: why no families can go on; empty where they can, and with
    * other corrections.

@@ -5,6 +5,7 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/mapping_q1.h>
 
+#include <perideal/base/matrix_product.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/diffusion/fem_operator.h>
@@ -137,7 +138,7 @@ namespace PeriDeal
         zone_bonds->multiply_then(y, x, finish);
         return;
       }
-    stiffness.vmult(y, x);
+    MatrixProduct(stiffness).vmult(y, x);
     finish(0, y.locally_owned_size());
   }
 
@@ -193,7 +194,7 @@ namespace PeriDeal
     if (capacity_is_diagonal())
       DiffusionOperatorBase<dim>::apply_capacity(y, x);
     else
-      mass.vmult(y, x);
+      MatrixProduct(mass).vmult(y, x);
   }
 
   template <int dim>

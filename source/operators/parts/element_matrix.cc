@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/matrix_product.h>
 #include <perideal/operators/parts/element_matrix.h>
 
 #include <cmath>
@@ -103,7 +104,7 @@ namespace PeriDeal
     if (alike)
       alike->multiply(y, x);
     else
-      matrix.vmult(y, x);
+      MatrixProduct(matrix).vmult(y, x);
   }
 
 

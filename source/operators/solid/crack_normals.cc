@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/base/symmetric_tensor.h>
-
 #include <perideal/operators/solid/crack_normals.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
@@ -101,16 +100,23 @@ namespace PeriDeal
     const Tensor<1, dim> own  = value_at<dim>(directions, place);
     if (own == Tensor<1, dim>())
       return own;
-    SymmetricTensor<2, dim> sum = symmetrize(outer_product(own, own));
+    using Matrix   = Eigen::Matrix<double, dim, dim>;
+    using Column   = Eigen::Matrix<double, dim, 1>;
+    Matrix     sum = Matrix::Zero();
+    const auto add = [&](const Tensor<1, dim> &p) {
+      const Eigen::Map<const Column> column(p.begin_raw());
+      sum += column * column.transpose();
+    };
+    add(own);
     for (const unsigned int j : neighbors[place])
       if (const unsigned int other = nodes.place(j); other != numbers::invalid_unsigned_int)
-        {
-          const Tensor<1, dim> p = value_at<dim>(directions, other);
-          sum += symmetrize(outer_product(p, p));
-        }
-    const auto [value, direction] = eigenvectors(sum, SymmetricTensorEigenvectorMethod::jacobi)[0];
-    if (value < most * trace(sum))
+        add(value_at<dim>(directions, other));
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(sum); // values ascend
+    if (solver.eigenvalues()(dim - 1) < most * sum.trace())
       return Tensor<1, dim>();
+    Tensor<1, dim> direction;
+    for (unsigned int d = 0; d < dim; ++d)
+      direction[d] = solver.eigenvectors()(d, dim - 1);
     return direction * own < 0. ? -1. * direction : direction;
   }
 

@@ -17,27 +17,39 @@ namespace PeriDeal
 
   namespace
   {
-    /** Families that go on beyond the sides of the body: adds to q. Collective. */
+    /**
+     * Families that go on beyond the sides of the body: adds to q. Collective.
+     * @param thinnest part of a mesh
+     */
     template <int dim>
     std::unique_ptr<FictitiousBonds<dim>> complete_families(const Families<dim>       &families,
                                                             const SolidRows<dim>      &rows,
                                                             const BodyParameters<dim> &body,
-                                                            Vector                    &weighted)
+                                                            Vector                    &weighted,
+                                                            double                    &thinnest)
     {
       if (completes_mesh(body))
         {
-          const auto beyond_sides = [&](const auto &goes_on) {
+          const auto beyond_sides = [&](const auto &goes_on, ThinParts *thin) {
             return boundary_images<dim>(families.nodes(),
                                         body.boundary_conditions.symmetry,
                                         goes_on,
-                                        families.weights().reach());
+                                        families.weights().reach(),
+                                        thin);
           };
-          auto beyond = std::make_unique<FictitiousBonds<dim>>(
+          ThinParts  thin{[&](const types::boundary_id side) { return is_free(body, side); },
+                         thin_on_mesh(body),
+                         0.};
+          const auto images =
+            beyond_sides([&](const types::boundary_id side) { return goes_on_beyond(body, side); },
+                         &thin);
+          thinnest          = thin.thinnest;
+          const bool ends   = completes_at_surfaces(body) || thin.thinnest < thin.most;
+          auto       beyond = std::make_unique<FictitiousBonds<dim>>(
             families,
-            beyond_sides([&](const types::boundary_id side) { return goes_on_beyond(body, side); }),
-            completes_at_surfaces(body) ?
-              beyond_sides([](const types::boundary_id) { return true; }) :
-              std::vector<BoundaryImage<dim>>());
+            images,
+            ends ? beyond_sides([](const types::boundary_id) { return true; }, nullptr) :
+                         std::vector<BoundaryImage<dim>>());
           beyond->add_weights(weighted);
           return beyond;
         }
@@ -96,7 +108,7 @@ namespace PeriDeal
     , laws(families.nodes(), body)
     , rows(families, laws, body)
     , kinematics(families, rows, thermal, body.elasticity.has_full_kinematics())
-    , beyond(complete_families(families, rows, body, laws.weighted))
+    , beyond(complete_families(families, rows, body, laws.weighted, thinnest))
     , weights_follow(body.elasticity.micromodulus != Micromodulus::constant)
   {
     if (!weights_follow)

@@ -6,6 +6,7 @@
 #include <perideal/operators/solid/bond_kinematics.h>
 #include <perideal/operators/solid/fictitious_bonds.h>
 
+#include <limits>
 #include <memory>
 
 namespace PeriDeal
@@ -34,11 +35,13 @@ namespace PeriDeal
      */
     void apply_change(const ChangeSet<dim> &change, BondState &state, const bool marked);
 
-    Families<dim>                         families;
-    NodeLaws<dim>                         laws;
-    ThermalStrains                        thermal;
-    SolidRows<dim>                        rows;
-    BondKinematics<dim>                   kinematics;
+    Families<dim>       families;
+    NodeLaws<dim>       laws;
+    ThermalStrains      thermal;
+    SolidRows<dim>      rows;
+    BondKinematics<dim> kinematics;
+    // Of a mesh: least thickness of the body behind free sides, where it is thin (thin_on_mesh()).
+    double                                thinnest = std::numeric_limits<double>::infinity();
     std::unique_ptr<FictitiousBonds<dim>> beyond; // or none, on all processes
 
   private:
