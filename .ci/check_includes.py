@@ -21,7 +21,7 @@ STOREYS = [["base"], ["scene"], ["mesh", "laws"], ["bonds"],
 FLOORS = {room.split("/")[0] for rooms in STOREYS for room in rooms if "/" in room}
 STOREY = {room: number for number, rooms in enumerate(STOREYS) for room in rooms}
 
-MAX_HEADER, MAX_SOURCE = 300, 500
+MAX_HEADER, MAX_SOURCE = 300, 850
 MAX_COMMENT = 100
 LICENCE = "SPDX-License-Identifier: LGPL-2.1-or-later"
 COPYRIGHT = "Copyright (C) 2026 the PeriDeal authors"
