@@ -433,13 +433,6 @@ namespace PeriDeal
     return result;
   }
 
-  template <int dim>
-  const std::vector<Point<dim>> &PointEvaluator<dim>::inner_points() const
-  {
-    return inner;
-  }
-
-
   template class PointEvaluator<1>;
   template class PointEvaluator<2>;
   template class PointEvaluator<3>;

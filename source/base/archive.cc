@@ -122,12 +122,6 @@ namespace PeriDeal
   {}
 
 
-  bool MemoryArchive::loads() const
-  {
-    return is_loading;
-  }
-
-
   template <typename T>
   T &MemoryArchive::entry(std::map<std::string, T> &entries, const std::string &name) const
   {

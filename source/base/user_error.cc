@@ -23,12 +23,6 @@ namespace PeriDeal
   }
 
 
-  const std::string &UserError::message() const
-  {
-    return text;
-  }
-
-
   void UserError::print_info(std::ostream &out) const
   {
     out << "    " << text << std::endl;

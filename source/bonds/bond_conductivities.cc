@@ -132,12 +132,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool BondConductivities<dim>::uniform() const
-  {
-    return all_alike;
-  }
-
-  template <int dim>
   bool BondConductivities<dim>::depend_on_temperature() const
   {
     return material.conductivity.depends_on_temperature();

@@ -98,12 +98,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const std::vector<SymmetryPlane> &BoundaryFacets<dim>::planes() const
-  {
-    return symmetry_planes;
-  }
-
-  template <int dim>
   double BoundaryFacets<dim>::extent() const
   {
     Point<dim> lower, upper;

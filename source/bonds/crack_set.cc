@@ -358,18 +358,6 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  double CrackSet<dim>::now() const
-  {
-    return time;
-  }
-
-  template <int dim>
-  const CrackHistory<dim> &CrackSet<dim>::history() const
-  {
-    return past;
-  }
-
   template class CrackSet<1>;
   template class CrackSet<2>;
   template class CrackSet<3>;

@@ -131,33 +131,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  const Families<dim> &DiffusionBonds<dim>::families() const
-  {
-    return own_families;
-  }
-
-  template <int dim>
   const Nodes<dim> &DiffusionBonds<dim>::nodes() const
   {
     return topology.nodes();
   }
 
   template <int dim>
-  const Neighbors<dim> &DiffusionBonds<dim>::neighbors() const
-  {
-    return topology;
-  }
-
-  template <int dim>
   const KernelWeights<dim> &DiffusionBonds<dim>::weights() const
   {
     return topology.weights();
-  }
-
-  template <int dim>
-  const BondConductivities<dim> &DiffusionBonds<dim>::conductivities() const
-  {
-    return material;
   }
 
   template <int dim>
@@ -182,12 +164,6 @@ namespace PeriDeal
   NodeFactors<dim> &DiffusionBonds<dim>::factors()
   {
     return node_factors;
-  }
-
-  template <int dim>
-  bool DiffusionBonds<dim>::corrects_every_bond() const
-  {
-    return corrects_all;
   }
 
   template <int dim>

@@ -205,24 +205,6 @@ namespace PeriDeal
   }
 
   template <int dim>
-  const Neighbors<dim> &Families<dim>::neighbors() const
-  {
-    return topology;
-  }
-
-  template <int dim>
-  const KernelWeights<dim> &Families<dim>::weights() const
-  {
-    return of_bonds;
-  }
-
-  template <int dim>
-  const CrackSet<dim> &Families<dim>::cracks() const
-  {
-    return crack_set;
-  }
-
-  template <int dim>
   CrackSet<dim> &Families<dim>::cracks()
   {
     return crack_set;

@@ -215,39 +215,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  const std::vector<FamilyMember<dim>> &KernelWeights<dim>::members() const
-  {
-    return family;
-  }
-
-  template <int dim>
-  const std::vector<FamilyMember<dim>> &KernelWeights<dim>::self_members() const
-  {
-    return self_additions;
-  }
-
-  template <int dim>
-  const std::vector<FamilyMember<dim>> &KernelWeights<dim>::nearest_members() const
-  {
-    return nearest;
-  }
-
-  template <int dim>
   double KernelWeights<dim>::horizon() const
   {
     return parameters.horizon;
-  }
-
-  template <int dim>
-  double KernelWeights<dim>::reach() const
-  {
-    return farthest;
-  }
-
-  template <int dim>
-  bool KernelWeights<dim>::has_complete_families() const
-  {
-    return complete_families;
   }
 
   template class KernelWeights<1>;

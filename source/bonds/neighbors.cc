@@ -105,24 +105,6 @@ namespace PeriDeal
   }
 
   template <int dim>
-  const Nodes<dim> &Neighbors<dim>::nodes() const
-  {
-    return own_nodes;
-  }
-
-  template <int dim>
-  const std::vector<FictitiousNode<dim>> &Neighbors<dim>::outside() const
-  {
-    return beyond;
-  }
-
-  template <int dim>
-  const KernelWeights<dim> &Neighbors<dim>::weights() const
-  {
-    return of_bonds;
-  }
-
-  template <int dim>
   std::size_t Neighbors<dim>::memory_consumption() const
   {
     return search->memory_consumption() + beyond.capacity() * sizeof(FictitiousNode<dim>);

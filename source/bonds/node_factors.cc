@@ -49,12 +49,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool NodeFactors<dim>::empty() const
-  {
-    return factors.empty();
-  }
-
-  template <int dim>
   std::size_t NodeFactors<dim>::memory_consumption() const
   {
     return factors.capacity() * sizeof(double);

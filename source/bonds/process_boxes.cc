@@ -45,13 +45,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned int ProcessBoxes<dim>::n_processes() const
-  {
-    return corners.size();
-  }
-
-
-  template <int dim>
   bool ProcessBoxes<dim>::reach(const unsigned int rank,
                                 const Point<dim>  &p,
                                 const double       distance) const

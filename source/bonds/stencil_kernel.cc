@@ -328,13 +328,6 @@ namespace PeriDeal
 
 
 
-  std::size_t StencilKernel::n_multiplications() const
-  {
-    return plan.weights.size();
-  }
-
-
-
   std::string StencilKernel::target()
   {
     return internal::stencil_target_name();

@@ -196,13 +196,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::size_t CellPaths<dim>::n_followed_plainly() const
-  {
-    return n_plain;
-  }
-
-
-  template <int dim>
   std::size_t CellPaths<dim>::memory_consumption() const
   {
     return numbers.capacity() * sizeof(unsigned int) + beyond.capacity() * sizeof(unsigned int) +

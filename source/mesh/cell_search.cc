@@ -58,13 +58,6 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  double CellSearch<dim>::largest_diameter() const
-  {
-    return diameter;
-  }
-
-
   template class CellSearch<1>;
   template class CellSearch<2>;
   template class CellSearch<3>;

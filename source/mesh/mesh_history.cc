@@ -59,12 +59,6 @@ namespace PeriDeal
   }
 
 
-  unsigned int MeshHistory::n_adaptations() const
-  {
-    return marks.size();
-  }
-
-
   void MeshHistory::exchange(Archive &archive)
   {
     unsigned int n = marks.size();

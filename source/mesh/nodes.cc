@@ -293,12 +293,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  types::global_dof_index Nodes<dim>::first_owned() const
-  {
-    return first;
-  }
-
-  template <int dim>
   types::global_dof_index Nodes<dim>::n_global() const
   {
     return dofs->n_dofs();
@@ -312,46 +306,10 @@ namespace PeriDeal
   }
 
   template <int dim>
-  const std::vector<BoundaryShare> &Nodes<dim>::boundary_shares() const
-  {
-    return shares;
-  }
-
-  template <int dim>
-  const std::optional<Lattice<dim>> &Nodes<dim>::lattice() const
-  {
-    return regular;
-  }
-
-  template <int dim>
-  bool Nodes<dim>::has_doubled_nodes() const
-  {
-    return doubled;
-  }
-
-  template <int dim>
-  bool Nodes<dim>::is_graded() const
-  {
-    return graded;
-  }
-
-  template <int dim>
   bool Nodes<dim>::is_hanging(const unsigned int node) const
   {
     AssertIndexRange(node, owned_count);
     return !hanging.empty() && hanging[node];
-  }
-
-  template <int dim>
-  double Nodes<dim>::smallest_spacing() const
-  {
-    return shortest_edge;
-  }
-
-  template <int dim>
-  const DoFHandler<dim> &Nodes<dim>::dof_handler() const
-  {
-    return *dofs;
   }
 
   template <int dim>

@@ -142,12 +142,6 @@ namespace PeriDeal
   CheckpointReader::~CheckpointReader() = default;
 
 
-  bool CheckpointReader::loads() const
-  {
-    return true;
-  }
-
-
   void CheckpointReader::check(const bool good, const std::string &problem) const
   {
     throw_on_all_if_any(communicator, good ? "" : "The checkpoint '" + name + "' " + problem + ".");

@@ -126,12 +126,6 @@ namespace PeriDeal
   }
 
 
-  bool CheckpointWriter::loads() const
-  {
-    return false;
-  }
-
-
   template <typename number>
   void CheckpointWriter::write(const std::string         &table,
                                const std::vector<number> &own,

@@ -104,18 +104,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const std::vector<DataOutBase::Patch<dim, dim>> &FieldWriter<dim>::get_patches() const
-  {
-    return patches;
-  }
-
-  template <int dim>
-  std::vector<std::string> FieldWriter<dim>::get_dataset_names() const
-  {
-    return names;
-  }
-
-  template <int dim>
   std::vector<std::tuple<unsigned int,
                          unsigned int,
                          std::string,

@@ -60,20 +60,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const Vector &DiffusionProblem<dim>::state() const
-  {
-    return solution;
-  }
-
-
-  template <int dim>
-  unsigned int DiffusionProblem<dim>::n_components() const
-  {
-    return 1;
-  }
-
-
-  template <int dim>
   std::vector<std::string> DiffusionProblem<dim>::columns() const
   {
     return {"value"};

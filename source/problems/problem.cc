@@ -28,13 +28,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool Problem<dim>::tells_at_stops() const
-  {
-    return false;
-  }
-
-
-  template <int dim>
   std::string Problem<dim>::doing(const unsigned int, const unsigned int, const double) const
   {
     return name() + ": time stepping";

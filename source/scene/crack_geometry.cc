@@ -209,26 +209,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const Tensor<1, dim> &CrackGeometry<dim>::normal() const
-  {
-    return unit_normal;
-  }
-
-
-  template <int dim>
-  double CrackGeometry<dim>::measure() const
-  {
-    return content;
-  }
-
-
-  template <int dim>
-  const std::vector<Point<dim>> &CrackGeometry<dim>::corners() const
-  {
-    return corner_points;
-  }
-
-  template <int dim>
   void CrackGeometry<dim>::close_joints(const CrackGeometry &other)
   {
     const unsigned int n = static_cast<unsigned int>(corner_points.size());

@@ -260,20 +260,6 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  const std::vector<double> &CrackHistory<dim>::events() const
-  {
-    return times;
-  }
-
-
-  template <int dim>
-  double CrackHistory<dim>::longest_advance() const
-  {
-    return advance;
-  }
-
-
   template class CrackHistory<1>;
   template class CrackHistory<2>;
   template class CrackHistory<3>;

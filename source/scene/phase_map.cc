@@ -158,12 +158,6 @@ namespace PeriDeal
   }
 
 
-  const std::vector<std::string> &ImageColors::names() const
-  {
-    return phases;
-  }
-
-
   Pixel ImageColors::color_of(const int phase) const
   {
     for (const Rule &rule : rules)

@@ -437,12 +437,6 @@ namespace PeriDeal
   }
 
 
-  const Regions &Phases::all() const
-  {
-    return *regions;
-  }
-
-
 #define PERIDEAL_INSTANTIATE(dim)                                                               \
   template bool   Region::contains<dim>(const dealii::Point<dim> &) const;                      \
   template int    Regions::at<dim>(const dealii::Point<dim> &) const;                           \

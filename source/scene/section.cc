@@ -56,18 +56,6 @@ namespace PeriDeal
   }
 
 
-  const std::string &SceneSection::name() const
-  {
-    return section;
-  }
-
-
-  const std::vector<Entry> &SceneSection::entries() const
-  {
-    return list;
-  }
-
-
   void SceneSection::set(const std::string &entry, const std::string &text)
   {
     const_cast<Entry &>(find(entry)).text = trimmed(text);

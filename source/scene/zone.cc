@@ -223,13 +223,6 @@ namespace PeriDeal
     return kind == ZoneKind::follow;
   }
 
-  template <int dim>
-  double Zone<dim>::width() const
-  {
-    return reach;
-  }
-
-
 #define PERIDEAL_INSTANTIATE(dim)                                                         \
   template double distance_to_piece(const std::vector<Point<dim>> &, const Point<dim> &); \
   template class Zone<dim>;

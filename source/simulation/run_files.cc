@@ -160,12 +160,6 @@ namespace PeriDeal
   }
 
 
-  CheckpointReader *RunFiles::checkpoint() const
-  {
-    return reader.get();
-  }
-
-
   void RunFiles::has_resumed()
   {
     reader.reset();

@@ -790,13 +790,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const Problem<dim> &Simulation<dim>::problem() const
-  {
-    return *problems[0];
-  }
-
-
-  template <int dim>
   nlohmann::ordered_json Simulation<dim>::found()
   {
     for (const auto &problem : problems)

@@ -40,13 +40,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const Attempts<dim> &Search<dim>::attempts() const
-  {
-    return family;
-  }
-
-
-  template <int dim>
   Attempt Search<dim>::with_settings(const double fineness) const
   {
     Attempt attempt = family.at(fineness);
@@ -169,23 +162,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  const Tried<dim> &Search<dim>::last() const
-  {
-    return latest;
-  }
-
-
-  template <int dim>
   Tried<dim> Search<dim>::release()
   {
     return std::move(latest);
-  }
-
-
-  template <int dim>
-  const ObservedError &Search<dim>::error() const
-  {
-    return now;
   }
 
 
@@ -200,20 +179,6 @@ namespace PeriDeal
       return scene.accuracy.measure == AccuracyMeasure::field && family.best_order() > 1. &&
              largest_error(steps) <= tolerance;
     return steps.size() > 3 || now.order > 0.5 * family.best_order();
-  }
-
-
-  template <int dim>
-  unsigned int Search<dim>::n_tried() const
-  {
-    return n;
-  }
-
-
-  template <int dim>
-  unsigned int Search<dim>::n_compared() const
-  {
-    return steps.size();
   }
 
 

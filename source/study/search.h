@@ -49,7 +49,10 @@ namespace PeriDeal
     /** What all attempts have besides, from now on. */
     void set(const std::vector<Setting> &settings);
 
-    const Attempts<dim> &attempts() const;
+    const Attempts<dim> &attempts() const
+    {
+      return family;
+    }
 
     Attempt first() const;
 
@@ -71,13 +74,19 @@ namespace PeriDeal
     double time_of_richer() const;   // seconds
     double memory_of_richer() const; // bytes on all processes
 
-    const Tried<dim> &last() const;
+    const Tried<dim> &last() const
+    {
+      return latest;
+    }
 
     /** After it nothing may be asked of the last one's solution. */
     Tried<dim> release();
 
     /** Of the last one; negative if nothing is known yet. */
-    const ObservedError &error() const;
+    const ObservedError &error() const
+    {
+      return now;
+    }
 
     /**
      * Whether the error may be called smaller than a tolerance. An order is seen in three solutions
@@ -88,8 +97,14 @@ namespace PeriDeal
      */
     bool is_within(const double tolerance) const;
 
-    unsigned int n_tried() const;
-    unsigned int n_compared() const; // with something known of the one before
+    unsigned int n_tried() const
+    {
+      return n;
+    }
+    unsigned int n_compared() const
+    {
+      return steps.size();
+    } // with something known of the one before
 
     /** Seconds, and bytes on all processes. */
     double expected_time(const Attempt &attempt) const;

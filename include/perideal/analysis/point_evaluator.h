@@ -86,7 +86,10 @@ namespace PeriDeal
      * The points; those that were looked up in the mesh moved a little towards the middle of the
      * cell, in whose material they are.
      */
-    const std::vector<dealii::Point<dim>> &inner_points() const;
+    const std::vector<dealii::Point<dim>> &inner_points() const
+    {
+      return inner;
+    }
 
   private:
     struct Part

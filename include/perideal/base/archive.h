@@ -108,7 +108,10 @@ namespace PeriDeal
     /** To load what @p saved holds, on any processes that have it. */
     MemoryArchive(const MemoryArchive &saved, const MPI_Comm communicator);
 
-    bool loads() const override;
+    bool loads() const override
+    {
+      return is_loading;
+    }
 
   private:
     void take(const std::string &name, std::vector<double> &values) override;

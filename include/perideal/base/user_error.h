@@ -24,7 +24,10 @@ namespace PeriDeal
     explicit UserError(const std::string &message);
 
     /** The sentence for the user. */
-    const std::string &message() const;
+    const std::string &message() const
+    {
+      return text;
+    }
 
     void print_info(std::ostream &out) const override;
 

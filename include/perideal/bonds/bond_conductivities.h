@@ -30,7 +30,10 @@ namespace PeriDeal
                        SidePoints            side_points = {});
 
     /** One conductivity everywhere. */
-    bool uniform() const;
+    bool uniform() const
+    {
+      return all_alike;
+    }
     bool depend_on_temperature() const;
 
     double of_node(const unsigned int node) const;

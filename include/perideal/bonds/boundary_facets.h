@@ -58,7 +58,10 @@ namespace PeriDeal
     double go_on_in_part(const std::function<bool(const dealii::types::boundary_id)> &free,
                          const double                                                 most);
 
-    const std::vector<SymmetryPlane> &planes() const;
+    const std::vector<SymmetryPlane> &planes() const
+    {
+      return symmetry_planes;
+    }
 
     /** Global index and place of a facet's node. */
     dealii::types::global_dof_index node(const unsigned int facet, const unsigned int k) const;

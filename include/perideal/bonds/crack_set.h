@@ -111,10 +111,16 @@ namespace PeriDeal
     }
 
     /** The representative time of the cracks as they are now. */
-    double now() const;
+    double now() const
+    {
+      return time;
+    }
 
     /** When the cracks or their transmission change. */
-    const CrackHistory<dim> &history() const;
+    const CrackHistory<dim> &history() const
+    {
+      return past;
+    }
 
   private:
     template <typename Test>

@@ -63,16 +63,25 @@ namespace PeriDeal
      */
     void nearest_bonds_of(const unsigned int node, std::vector<Bond> &bonds) const;
 
-    const Families<dim> &families() const;
+    const Families<dim> &families() const
+    {
+      return own_families;
+    }
 
     // Of the families.
-    const Nodes<dim>         &nodes() const;
-    const Neighbors<dim>     &neighbors() const;
+    const Nodes<dim>     &nodes() const;
+    const Neighbors<dim> &neighbors() const
+    {
+      return topology;
+    }
     const KernelWeights<dim> &weights() const;
 
     /** The material along a bond. */
-    const BondConductivities<dim> &conductivities() const;
-    BondConductivities<dim>       &conductivities();
+    const BondConductivities<dim> &conductivities() const
+    {
+      return material;
+    }
+    BondConductivities<dim> &conductivities();
 
     /** The cracks as they are now. Node factors stay as they are when these change. */
     const CrackSet<dim> &cracks() const;
@@ -82,7 +91,10 @@ namespace PeriDeal
     NodeFactors<dim> &factors();
 
     /** Surface correction by energy: bonds everywhere may have factors. */
-    bool corrects_every_bond() const;
+    bool corrects_every_bond() const
+    {
+      return corrects_all;
+    }
 
     /** Some bond of this node may cross a crack, or be scaled for one. */
     bool near_crack(const unsigned int node) const;

@@ -67,13 +67,22 @@ namespace PeriDeal
     /** Some bond of this node may cross a crack. */
     bool near_crack(const unsigned int node) const;
 
-    const Nodes<dim>         &nodes() const;
-    const Neighbors<dim>     &neighbors() const;
-    const KernelWeights<dim> &weights() const;
+    const Nodes<dim>     &nodes() const;
+    const Neighbors<dim> &neighbors() const
+    {
+      return topology;
+    }
+    const KernelWeights<dim> &weights() const
+    {
+      return of_bonds;
+    }
 
     /** The cracks as they are now. */
-    const CrackSet<dim> &cracks() const;
-    CrackSet<dim>       &cracks();
+    const CrackSet<dim> &cracks() const
+    {
+      return crack_set;
+    }
+    CrackSet<dim> &cracks();
 
     std::size_t memory_consumption() const;
 

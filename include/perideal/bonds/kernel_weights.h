@@ -46,13 +46,22 @@ namespace PeriDeal
                   const double                                 smallest_spacing);
 
     /** On a lattice: the full family, self term not included. Else empty. */
-    const std::vector<FamilyMember<dim>> &members() const;
+    const std::vector<FamilyMember<dim>> &members() const
+    {
+      return family;
+    }
 
     /** Self term additions (own volume), empty if none. */
-    const std::vector<FamilyMember<dim>> &self_members() const;
+    const std::vector<FamilyMember<dim>> &self_members() const
+    {
+      return self_additions;
+    }
 
     /** The members one step away along an axis. */
-    const std::vector<FamilyMember<dim>> &nearest_members() const;
+    const std::vector<FamilyMember<dim>> &nearest_members() const
+    {
+      return nearest;
+    }
 
     /** The member at a relative position, or nullptr. On lattices only. */
     const FamilyMember<dim> *find(const dealii::Tensor<1, dim> &xi) const;
@@ -68,7 +77,10 @@ namespace PeriDeal
      * spacing farther).
      */
     double horizon() const;
-    double reach() const;
+    double reach() const
+    {
+      return farthest;
+    }
 
     /** The largest offset of a member in each direction. */
     std::array<int, dim> reach_in_sites() const;
@@ -86,7 +98,10 @@ namespace PeriDeal
      * Discrete calibration had a complete family to sum over. Off the lattice a body may be too
      * narrow for any; then it is analytic.
      */
-    bool has_complete_families() const;
+    bool has_complete_families() const
+    {
+      return complete_families;
+    }
 
     /**
      * What the bonds of a complete family conduct of a linear field, over what the conductivity

@@ -83,9 +83,18 @@ namespace PeriDeal
     std::vector<unsigned int> nodes_near(const std::vector<dealii::BoundingBox<dim>> &boxes,
                                          const double distance) const;
 
-    const Nodes<dim>                       &nodes() const;
-    const std::vector<FictitiousNode<dim>> &outside() const;
-    const KernelWeights<dim>               &weights() const;
+    const Nodes<dim> &nodes() const
+    {
+      return own_nodes;
+    }
+    const std::vector<FictitiousNode<dim>> &outside() const
+    {
+      return beyond;
+    }
+    const KernelWeights<dim> &weights() const
+    {
+      return of_bonds;
+    }
 
     std::size_t memory_consumption() const;
 

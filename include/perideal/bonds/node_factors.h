@@ -25,7 +25,10 @@ namespace PeriDeal
      */
     void set(std::vector<double> factors, const unsigned int n_directions, const bool mirrored);
 
-    bool   empty() const;
+    bool empty() const
+    {
+      return factors.empty();
+    }
     double of_bond(const unsigned int node, const unsigned int neighbor) const;
 
     std::size_t memory_consumption() const;

@@ -21,7 +21,10 @@ namespace PeriDeal
      */
     ProcessBoxes(const std::vector<dealii::Point<dim>> &own_points, const MPI_Comm communicator);
 
-    unsigned int n_processes() const;
+    unsigned int n_processes() const
+    {
+      return corners.size();
+    }
 
     /** Whether p lies within a distance of some box of that process. Not collective. */
     bool reach(const unsigned int rank, const dealii::Point<dim> &p, const double distance) const;

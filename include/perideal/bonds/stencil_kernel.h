@@ -147,7 +147,10 @@ namespace PeriDeal
     }
 
     /// Number of multiplications at a point that are left after folding.
-    std::size_t n_multiplications() const;
+    std::size_t n_multiplications() const
+    {
+      return plan.weights.size();
+    }
 
     /// Name of the SIMD target in use, such as "AVX2" or "AVX3" (AVX-512).
     static std::string target();

@@ -85,7 +85,10 @@ namespace PeriDeal
     bool follow_plainly(const End &a, const End &b, std::vector<Piece> &pieces);
 
     /** Paths that could not be walked. */
-    std::size_t n_followed_plainly() const;
+    std::size_t n_followed_plainly() const
+    {
+      return n_plain;
+    }
 
     std::size_t memory_consumption() const;
 

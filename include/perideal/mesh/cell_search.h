@@ -33,7 +33,10 @@ namespace PeriDeal
               std::vector<Cell>                           &cells) const;
 
     /** The longest diagonal of a cell known here. */
-    double largest_diameter() const;
+    double largest_diameter() const
+    {
+      return diameter;
+    }
 
   private:
     struct Tree;

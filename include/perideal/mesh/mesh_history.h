@@ -24,7 +24,10 @@ namespace PeriDeal
     template <int dim>
     void repeat(dealii::Triangulation<dim> &mesh) const;
 
-    unsigned int n_adaptations() const;
+    unsigned int n_adaptations() const
+    {
+      return marks.size();
+    }
 
     void exchange(Archive &archive);
 

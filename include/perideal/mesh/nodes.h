@@ -80,7 +80,10 @@ namespace PeriDeal
     unsigned int n_owned() const;
     /** Owned nodes and ghosts. */
     unsigned int                    n_local() const;
-    dealii::types::global_dof_index first_owned() const;
+    dealii::types::global_dof_index first_owned() const
+    {
+      return first;
+    }
     dealii::types::global_dof_index n_global() const;
 
     const dealii::Point<dim> &position(const unsigned int node) const;
@@ -97,7 +100,10 @@ namespace PeriDeal
      * Shares of owned nodes in boundary faces (both faces of a crack cut into the mesh are not
      * listed). Of stairs in place of the rim of a hole what they have of the rim.
      */
-    const std::vector<BoundaryShare> &boundary_shares() const;
+    const std::vector<BoundaryShare> &boundary_shares() const
+    {
+      return shares;
+    }
 
     /**
      * Find the shares of parts: a node on a part of a side has what of the area that it stands for
@@ -118,13 +124,22 @@ namespace PeriDeal
     dealii::Point<dim> place_of(const BoundaryShare &share) const;
 
     /** The lattice of a box or a plate with a hole. Empty on mesh files. */
-    const std::optional<Lattice<dim>> &lattice() const;
+    const std::optional<Lattice<dim>> &lattice() const
+    {
+      return regular;
+    }
 
     /** Some nodes have a crack point of their own. */
-    bool has_doubled_nodes() const;
+    bool has_doubled_nodes() const
+    {
+      return doubled;
+    }
 
     /** Some cells of the lattice are merged (`Coarsening`), so that sites in them have no node. */
-    bool is_graded() const;
+    bool is_graded() const
+    {
+      return graded;
+    }
 
     /**
      * A node whose value follows from its neighbours', because it lies on the side of a larger
@@ -133,10 +148,16 @@ namespace PeriDeal
     bool is_hanging(const unsigned int node) const;
 
     /** Smallest edge of the lattice, or of the mesh's cells. */
-    double smallest_spacing() const;
+    double smallest_spacing() const
+    {
+      return shortest_edge;
+    }
 
-    const dealii::DoFHandler<dim> &dof_handler() const;
-    MPI_Comm                       communicator() const;
+    const dealii::DoFHandler<dim> &dof_handler() const
+    {
+      return *dofs;
+    }
+    MPI_Comm communicator() const;
 
     NodeRecord<dim> record(const unsigned int node) const;
 

@@ -65,8 +65,14 @@ namespace PeriDeal
     void exchange(Archive &archive);
 
   private:
-    const std::vector<dealii::DataOutBase::Patch<dim, dim>> &get_patches() const override;
-    std::vector<std::string>                                 get_dataset_names() const override;
+    const std::vector<dealii::DataOutBase::Patch<dim, dim>> &get_patches() const override
+    {
+      return patches;
+    }
+    std::vector<std::string> get_dataset_names() const override
+    {
+      return names;
+    }
     std::vector<std::tuple<unsigned int,
                            unsigned int,
                            std::string,

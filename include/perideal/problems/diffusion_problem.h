@@ -108,8 +108,14 @@ namespace PeriDeal
       const Vector                                            &u,
       const std::function<double(const dealii::Point<dim> &)> &exact) const = 0;
 
-    const Vector            &state() const override;
-    unsigned int             n_components() const override;
+    const Vector &state() const override
+    {
+      return solution;
+    }
+    unsigned int n_components() const override
+    {
+      return 1;
+    }
     std::vector<std::string> columns() const override;
     std::vector<double>      at_points(const PointEvaluator<dim>              &reader,
                                        const std::vector<std::vector<double>> &points) const override;

@@ -87,7 +87,10 @@ namespace PeriDeal
     virtual std::vector<double> stops(const double from, const double to) const;
 
     /** Totals are told at each of these, not only where results are written. Not collective. */
-    virtual bool tells_at_stops() const;
+    virtual bool tells_at_stops() const
+    {
+      return false;
+    }
 
     /** What is done on the way to the k-th of n stops, the last at t. Not collective. */
     virtual std::string doing(const unsigned int k, const unsigned int n, const double t) const;

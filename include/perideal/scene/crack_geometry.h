@@ -74,12 +74,21 @@ namespace PeriDeal
      */
     bool is_near(const dealii::Point<dim> &p, const double radius) const;
 
-    const dealii::Tensor<1, dim> &normal() const;
+    const dealii::Tensor<1, dim> &normal() const
+    {
+      return unit_normal;
+    }
 
     /** Length in 2D, area in 3D. */
-    double measure() const;
+    double measure() const
+    {
+      return content;
+    }
 
-    const std::vector<dealii::Point<dim>> &corners() const;
+    const std::vector<dealii::Point<dim>> &corners() const
+    {
+      return corner_points;
+    }
 
     /**
      * Close the ends (3D: the edges) that lie on another crack, so that cracks that meet leave no

@@ -74,10 +74,16 @@ namespace PeriDeal
     /** Some bond or pair may conduct again after it was cut, so that rates can grow. */
     bool may_close() const;
 
-    const std::vector<double> &events() const;
+    const std::vector<double> &events() const
+    {
+      return times;
+    }
 
     /** The longest path of a tip between two events. */
-    double longest_advance() const;
+    double longest_advance() const
+    {
+      return advance;
+    }
 
   private:
     double begin_of_span(const double t) const; // that holds t: an event, or 0

@@ -41,7 +41,10 @@ namespace PeriDeal
     int phase_of(const Pixel &pixel) const;
 
     /** The phases in the order of their first mention. */
-    const std::vector<std::string> &names() const;
+    const std::vector<std::string> &names() const
+    {
+      return phases;
+    }
 
     /**
      * The first colour of a phase, or of `void` (empty); of a range the grey in its middle. Black

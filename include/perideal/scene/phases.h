@@ -194,7 +194,10 @@ namespace PeriDeal
     /** Some phase has its own value of that entry. */
     bool gives(const std::string &entry) const;
 
-    const Regions &all() const;
+    const Regions &all() const
+    {
+      return *regions;
+    }
 
   private:
     std::vector<std::optional<Expression>> read(const std::string &entry) const;

@@ -68,9 +68,15 @@ namespace PeriDeal
     void parse_parameters(dealii::ParameterHandler &prm) override;
 
     /** The name of the section as users write it; empty outside all sections. */
-    const std::string &name() const;
+    const std::string &name() const
+    {
+      return section;
+    }
 
-    const std::vector<Entry> &entries() const;
+    const std::vector<Entry> &entries() const
+    {
+      return list;
+    }
 
     const std::string &text(const std::string &entry) const;
 

@@ -65,7 +65,10 @@ namespace PeriDeal
     bool follows_stretches() const;
 
     /** Distance from a crack that is still in the zone. */
-    double width() const;
+    double width() const
+    {
+      return reach;
+    }
 
   private:
     double distance_to_formula(const dealii::Point<dim> &p, const double farthest) const;

@@ -60,7 +60,10 @@ namespace PeriDeal
     bool end_early(const std::string &message, const bool diverged, const Json &more);
 
     /** The checkpoint to go on from, until has_resumed(); null in a run that begins. */
-    CheckpointReader *checkpoint() const;
+    CheckpointReader *checkpoint() const
+    {
+      return reader.get();
+    }
 
     /** All has been loaded: the run has results, and lets go of the checkpoint. */
     void has_resumed();

@@ -67,7 +67,10 @@ namespace PeriDeal
     void solve(const std::function<void(const double)> &see = {});
 
     /** That of the first model. After solve(). Not collective. */
-    const Problem<dim> &problem() const;
+    const Problem<dim> &problem() const
+    {
+      return *problems[0];
+    }
 
     /** What summary.json would have, after solve(). */
     nlohmann::ordered_json found();

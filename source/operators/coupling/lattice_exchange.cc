@@ -137,12 +137,6 @@ namespace PeriDeal
   }
 
   template <int dim, typename Law>
-  bool LatticeExchange<dim, Law>::zone_follows_cracks() const
-  {
-    return bonds.zone.follows_cracks();
-  }
-
-  template <int dim, typename Law>
   std::vector<BoundingBox<dim>> LatticeExchange<dim, Law>::joining_by(const double time) const
   {
     return bonds.joining_by(time);
@@ -174,12 +168,6 @@ namespace PeriDeal
   bool LatticeExchange<dim, Law>::in_zone(const unsigned int node) const
   {
     return bonds.in_zone(node);
-  }
-
-  template <int dim, typename Law>
-  const Families<dim> &LatticeExchange<dim, Law>::families() const
-  {
-    return bonds.families;
   }
 
   template <int dim, typename Law>

@@ -445,12 +445,6 @@ namespace PeriDeal
   }
 
   template <int dim, typename Law>
-  const Families<dim> &MeshExchange<dim, Law>::families() const
-  {
-    return own_families;
-  }
-
-  template <int dim, typename Law>
   std::size_t MeshExchange<dim, Law>::memory_consumption() const
   {
     std::size_t memory =

@@ -110,12 +110,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const NodeFamilies<dim> *StateCoupling<dim>::node_families() const
-  {
-    return this;
-  }
-
-  template <int dim>
   void StateCoupling<dim>::bonds_of(const unsigned int, std::vector<Bond> &list) const
   {
     list.clear();
@@ -398,12 +392,6 @@ namespace PeriDeal
       }
   }
 
-
-  template <int dim>
-  std::vector<types::boundary_id> StateCoupling<dim>::mirrors() const
-  {
-    return symmetry_sides;
-  }
 
   template <int dim>
   std::size_t StateCoupling<dim>::memory_of_bonds() const

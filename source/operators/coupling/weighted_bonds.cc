@@ -47,13 +47,6 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  std::size_t WeightedBonds<dim>::memory_of_bonds() const
-  {
-    return bonds.memory_consumption();
-  }
-
-
   template class WeightedBonds<1>;
   template class WeightedBonds<2>;
   template class WeightedBonds<3>;

@@ -71,12 +71,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool WeightedCoupling<dim>::zone_follows_cracks() const
-  {
-    return follows;
-  }
-
-  template <int dim>
   std::vector<BoundingBox<dim>> WeightedCoupling<dim>::joining_by(const double time) const
   {
     std::vector<BoundingBox<dim>> boxes;
@@ -121,12 +115,6 @@ namespace PeriDeal
   bool WeightedCoupling<dim>::in_zone(const unsigned int node) const
   {
     return weights_now[node] > 0.;
-  }
-
-  template <int dim>
-  const Families<dim> &WeightedCoupling<dim>::families() const
-  {
-    return own_families;
   }
 
   template <int dim>

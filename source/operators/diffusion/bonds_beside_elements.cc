@@ -26,20 +26,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const Coupling<dim> &BondsBesideElements<dim>::coupling() const
-  {
-    return *coupled;
-  }
-
-
-  template <int dim>
-  bool BondsBesideElements<dim>::apart() const
-  {
-    return in_form;
-  }
-
-
-  template <int dim>
   bool BondsBesideElements<dim>::leaves_nothing(const typename Coupling<dim>::Cell &cell) const
   {
     return in_form && coupled->leaves_nothing(cell);

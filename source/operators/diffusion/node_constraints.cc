@@ -430,19 +430,6 @@ namespace PeriDeal
   }
 
   template <int dim>
-  bool NodeConstraints<dim>::any_slave() const
-  {
-    return slaves_exist;
-  }
-
-  template <int dim>
-  bool NodeConstraints<dim>::any_prescribed() const
-  {
-    return prescribed_exist;
-  }
-
-
-  template <int dim>
   void NodeConstraints<dim>::distribute(Vector &u, const double t) const
   {
     for (const Prescribed &entry : prescribed_list)

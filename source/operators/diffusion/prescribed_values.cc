@@ -91,13 +91,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool PrescribedValues<dim>::any() const
-  {
-    return on_any_process;
-  }
-
-
-  template <int dim>
   void PrescribedValues<dim>::distribute(Vector &u, const double t) const
   {
     for (const Entry &entry : entries)

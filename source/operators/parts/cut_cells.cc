@@ -92,13 +92,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  const std::vector<bool> &CutCells<dim>::flags() const
-  {
-    return cut;
-  }
-
-
-  template <int dim>
   bool CutCells<dim>::removes() const
   {
     return rule.removes;
@@ -244,13 +237,6 @@ namespace PeriDeal
       stiffness = original;
     else
       stiffer = stiffer || has_positive;
-  }
-
-
-  template <int dim>
-  bool CutCells<dim>::pairs_are_stiffer() const
-  {
-    return stiffer;
   }
 
 

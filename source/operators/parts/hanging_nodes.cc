@@ -85,30 +85,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool HangingNodes<dim>::any() const
-  {
-    return on_any_process;
-  }
-
-
-  template <int dim>
   bool HangingNodes<dim>::is_hanging(const types::global_dof_index unknown) const
   {
     return on_any_process && lines.is_constrained(unknown);
-  }
-
-
-  template <int dim>
-  const std::vector<unsigned int> &HangingNodes<dim>::owned() const
-  {
-    return unknowns;
-  }
-
-
-  template <int dim>
-  const AffineConstraints<double> &HangingNodes<dim>::constraints() const
-  {
-    return lines;
   }
 
 

@@ -281,13 +281,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool DisplacementConditions<dim>::depends_on_time() const
-  {
-    return varies;
-  }
-
-
-  template <int dim>
   void DisplacementConditions<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
     KeyedPairs pairs; // a node and a component

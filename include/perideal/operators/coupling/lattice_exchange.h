@@ -48,16 +48,22 @@ namespace PeriDeal
     bool parts_cell(const Cell &cell) const override;
     bool leaves_nothing(const Cell &cell) const override;
     bool has_form() const override;
-    std::unique_ptr<BondForm>             make_form() override;
-    void                                  set_form_factors(std::vector<double> factors) override;
-    bool                                  zone_follows_cracks() const override;
+    std::unique_ptr<BondForm> make_form() override;
+    void                      set_form_factors(std::vector<double> factors) override;
+    bool                      zone_follows_cracks() const override
+    {
+      return bonds.zone.follows_cracks();
+    }
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  join(const double time) override;
     void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
     void                                  take_conductivities_at(const Vector &u) override;
-    const Families<dim>                  &families() const override;
-    std::size_t                           memory_consumption() const override;
+    const Families<dim>                  &families() const override
+    {
+      return bonds.families;
+    }
+    std::size_t memory_consumption() const override;
 
 
   private:

@@ -52,8 +52,11 @@ namespace PeriDeal
     void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
     void                                  take_conductivities_at(const Vector &u) override;
-    const Families<dim>                  &families() const override;
-    std::size_t                           memory_consumption() const override;
+    const Families<dim>                  &families() const override
+    {
+      return own_families;
+    }
+    std::size_t memory_consumption() const override;
 
     /** sum s_b W_b over sum W_b. */
     double kept_share() const override;

@@ -68,7 +68,10 @@ namespace PeriDeal
       return breaks && breaks->parts(cell);
     }
 
-    const NodeFamilies<dim> *node_families() const override;
+    const NodeFamilies<dim> *node_families() const override
+    {
+      return this;
+    }
     void        bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override; // none
     void        possible_neighbors_of(const unsigned int         node,
                                       std::vector<unsigned int> &neighbors) const override; // none
@@ -79,7 +82,10 @@ namespace PeriDeal
     void        visit_nodes_of_family(const unsigned int                         node,
                                       const std::function<void(const Family &)> &visit) const override;
     std::string fault_of(const unsigned int node) const override;
-    std::vector<dealii::types::boundary_id> mirrors() const override;
+    std::vector<dealii::types::boundary_id> mirrors() const override
+    {
+      return symmetry_sides;
+    }
 
   private:
     std::size_t memory_of_bonds() const override;

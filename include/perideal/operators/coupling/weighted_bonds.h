@@ -32,7 +32,10 @@ namespace PeriDeal
     }
 
   private:
-    std::size_t memory_of_bonds() const override;
+    std::size_t memory_of_bonds() const override
+    {
+      return bonds.memory_consumption();
+    }
 
     DiffusionBonds<dim> bonds;
   };

@@ -40,13 +40,19 @@ namespace PeriDeal
     bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
     bool finish_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
     bool symmetric() const override;
-    bool zone_follows_cracks() const override;
+    bool zone_follows_cracks() const override
+    {
+      return follows;
+    }
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  join(const double time) override;
     void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
-    const Families<dim>                  &families() const override;
-    std::size_t                           memory_consumption() const final;
+    const Families<dim>                  &families() const override
+    {
+      return own_families;
+    }
+    std::size_t memory_consumption() const final;
 
   protected:
     /** Besides that of the families and weights. */

@@ -34,13 +34,19 @@ namespace PeriDeal
     /** @param factors must outlive this */
     BondsBesideElements(std::unique_ptr<Coupling<dim>> coupling, const CrackSideFactors &factors);
 
-    const Coupling<dim> &coupling() const;
+    const Coupling<dim> &coupling() const
+    {
+      return *coupled;
+    }
 
     /** Damage may leave nodes alone, which keep their heat. */
     bool has_damage() const;
 
     /** The bonds are a form of their own. The same on all processes. */
-    bool apart() const;
+    bool apart() const
+    {
+      return in_form;
+    }
 
     /** The matrix needs nothing of a cell. */
     bool leaves_nothing(const typename Coupling<dim>::Cell &cell) const;

@@ -50,10 +50,16 @@ namespace PeriDeal
     const std::vector<Prescribed> &prescribed_nodes() const;
 
     /** Slaves exist on some process. */
-    bool any_slave() const;
+    bool any_slave() const
+    {
+      return slaves_exist;
+    }
 
     /** Something is prescribed on some process. */
-    bool any_prescribed() const;
+    bool any_prescribed() const
+    {
+      return prescribed_exist;
+    }
 
     /**
      * Set prescribed values and slaves for time t. Ghosts are exchanged if there are slaves.

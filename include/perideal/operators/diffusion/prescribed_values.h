@@ -35,7 +35,10 @@ namespace PeriDeal
                      const std::vector<PartUnknown<dim>>       &parts);
 
     /** Some unknown of any process has a value. Not collective. */
-    bool any() const;
+    bool any() const
+    {
+      return on_any_process;
+    }
 
     /** Set the values of time t; hanging nodes are left as they are. Not collective. */
     void distribute(Vector &u, const double t) const;

@@ -70,7 +70,10 @@ namespace PeriDeal
     double kept_of_removed(const Cell &cell) const;
 
     /** Of all cells, by active cell index; false for artificial ones. */
-    const std::vector<bool> &flags() const;
+    const std::vector<bool> &flags() const
+    {
+      return cut;
+    }
 
     bool removes() const;
 
@@ -133,7 +136,10 @@ namespace PeriDeal
      * The pairs of some cell conduct more than it did as a whole, since K_ab > 0 somewhere (cells
      * of very unequal sides). Of all calls of cut_matrix() until now, on this process.
      */
-    bool pairs_are_stiffer() const;
+    bool pairs_are_stiffer() const
+    {
+      return stiffer;
+    }
 
   private:
     /** What damage leaves of a pair of vertices. */

@@ -50,16 +50,25 @@ namespace PeriDeal
                     const MPI_Comm                                            communicator);
 
     /** On any process. */
-    bool any() const;
+    bool any() const
+    {
+      return on_any_process;
+    }
 
     /** By global number of an unknown; known for those of owned nodes and of ghost cells. */
     bool is_hanging(const dealii::types::global_dof_index unknown) const;
 
     /** Local numbers of the owned unknowns, ascending. */
-    const std::vector<unsigned int> &owned() const;
+    const std::vector<unsigned int> &owned() const
+    {
+      return unknowns;
+    }
 
     /** For the patterns of matrices. */
-    const dealii::AffineConstraints<double> &constraints() const;
+    const dealii::AffineConstraints<double> &constraints() const
+    {
+      return lines;
+    }
 
     /** Add the entries of one cell to the pattern of a matrix. Not collective. */
     void add_to(dealii::TrilinosWrappers::SparsityPattern          &pattern,

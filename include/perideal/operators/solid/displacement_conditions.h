@@ -80,7 +80,10 @@ namespace PeriDeal
     /** Set what is not free to a value. */
     void mask(Vector &y, const double value = 0.) const;
 
-    bool depends_on_time() const;
+    bool depends_on_time() const
+    {
+      return varies;
+    }
 
     /**
      * How far prescribed velocities have moved their nodes. @param keys of the owned nodes.
