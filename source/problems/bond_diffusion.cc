@@ -270,7 +270,6 @@ namespace PeriDeal
          "auto: " + automatic_correction(scene) :
        p.surface_correction == SurfaceCorrection::none          ? "none" :
        p.surface_correction == SurfaceCorrection::crack_scaling ? "crack scaling" :
-       p.surface_correction == SurfaceCorrection::volume        ? "volume" :
        p.surface_correction == SurfaceCorrection::moments       ? "moments" :
        p.completes_families()                                   ? "fictitious nodes" :
        scene.general.physics == Physics::elasticity ?

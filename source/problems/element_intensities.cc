@@ -242,42 +242,12 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  std::vector<StressIntensity> intensities_of_bonds(const Scene<dim>           &scene,
-                                                    const ElasticElements<dim> &elements,
-                                                    const Vector               &u,
-                                                    const double                t)
-  {
-    const Nodes<dim> &nodes  = elements.bonds().families().nodes();
-    const Vector     &change = elements.temperature_change();
-    u.update_ghost_values();
-    const auto list = bond_intensities<dim>(
-      scene,
-      elements.bonds().families(),
-      [&](const unsigned int i, const unsigned int k) {
-        // Elements may number ghosts in another order.
-        const auto index = nodes.partitioner()->local_to_global(i);
-        return k < dim ? u(dim * index + k) :
-                         strain_of_heat(scene, nodes.position(i), change, index);
-      },
-      is_warm<dim>(scene.elasticity),
-      t,
-      elements.crack_time());
-    u.set_ghost_state(false);
-    return list;
-  }
-
-
 #define PERIDEAL_INSTANTIATE(dim)                                                          \
   template std::vector<StressIntensity> intensities_of_cells(const Scene<dim> &,           \
                                                              const ElasticElements<dim> &, \
                                                              const DoFHandler<dim> &,      \
                                                              const Vector &,               \
                                                              const bool,                   \
-                                                             const double);                \
-  template std::vector<StressIntensity> intensities_of_bonds(const Scene<dim> &,           \
-                                                             const ElasticElements<dim> &, \
-                                                             const Vector &,               \
                                                              const double);
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

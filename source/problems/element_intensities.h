@@ -27,11 +27,4 @@ namespace PeriDeal
                                                     const Vector                  &u,
                                                     const bool                     bonds,
                                                     const double                   t);
-
-  /** Those of the families of a body that has bonds everywhere (bond_intensities()). Collective. */
-  template <int dim>
-  std::vector<StressIntensity> intensities_of_bonds(const Scene<dim>           &scene,
-                                                    const ElasticElements<dim> &elements,
-                                                    const Vector               &u,
-                                                    const double                t);
 } // namespace PeriDeal

@@ -30,10 +30,7 @@ namespace PeriDeal
     public:
       using SolidProblem<dim>::scene;
 
-      /**
-       * @param on finite elements, coupled, or peridynamics with fictitious nodes, which has
-       *           elements for what is beside bonds: loads, masses, stresses
-       */
+      /** @param on finite elements or coupled */
       ElementSolid(Model<dim> &on, const Scene<dim> &scene)
         : SolidProblem<dim>(scene)
         , model(on.kind)
@@ -41,17 +38,13 @@ namespace PeriDeal
       {
         {
           Timings::Scope scope(this->timings, "unknowns");
-          on.number(FE_Q<dim>(degree()), scene.domain, model != ModelKind::finite_elements);
+          on.number(FE_Q<dim>(degree()), scene.domain, model == ModelKind::coupled);
         }
         {
           Timings::Scope                 scope(this->timings, "operator");
           std::unique_ptr<Coupling<dim>> coupling;
-          if (model != ModelKind::finite_elements)
-            {
-              Nodes<dim> &nodes = on.nodes(scene, NodalVolume::partial);
-              coupling          = model == ModelKind::coupled ? make_solid_coupling(nodes, scene) :
-                                                                make_families_everywhere(nodes, scene);
-            }
+          if (model == ModelKind::coupled)
+            coupling = make_solid_coupling(on.nodes(scene, NodalVolume::partial), scene);
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }
         // Its fields would have to be mirrored, too.
@@ -230,14 +223,12 @@ namespace PeriDeal
       std::vector<StressIntensity> stress_intensities(const double time) const override
       {
         if constexpr (dim > 1)
-          return model == ModelKind::peridynamics ?
-                   intensities_of_bonds(scene, *elements, this->displacement, time) :
-                   intensities_of_cells(scene,
-                                        *elements,
-                                        handler,
-                                        this->displacement,
-                                        model == ModelKind::coupled,
-                                        time);
+          return intensities_of_cells(scene,
+                                      *elements,
+                                      handler,
+                                      this->displacement,
+                                      model == ModelKind::coupled,
+                                      time);
         else
           return {};
       }
@@ -266,8 +257,7 @@ namespace PeriDeal
       std::vector<std::pair<std::string, std::string>> settings() const override
       {
         std::vector<std::pair<std::string, std::string>> list;
-        if (model != ModelKind::peridynamics)
-          list.emplace_back("elements", "Q" + std::to_string(degree()));
+        list.emplace_back("elements", "Q" + std::to_string(degree()));
         if (model == ModelKind::coupled)
           {
             list.emplace_back("coupling", scene.coupling.scheme_text());
@@ -275,7 +265,7 @@ namespace PeriDeal
             list.emplace_back("share of the body in the zone",
                               to_text(100. * elements->bonds().zone_share()) + " %");
           }
-        if (model != ModelKind::finite_elements)
+        if (model == ModelKind::coupled)
           for (auto setting : bond_settings(scene, elements->bonds().families()))
             {
               // Bonds of the zone are not continued beyond sides by themselves.

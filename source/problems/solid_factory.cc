@@ -56,7 +56,7 @@ namespace PeriDeal
       pd.refuse(
         !runs(scene, ModelKind::coupled) && pd.scales_beside_cracks(),
         "Surface correction",
-        "'crack scaling' without 'Models = coupled' has no effect with 'Physics = elasticity'; use 'none', 'volume', 'energy' or 'moments'.");
+        "'crack scaling' without 'Models = coupled' has no effect with 'Physics = elasticity'; use 'none', 'energy' or 'moments'.");
       material.refuse(
         none && (material.fracture_energy || material.critical_stretch),
         material.fracture_energy ? "Fracture energy" : "Critical stretch",

@@ -484,10 +484,8 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<SolidProblem<dim>> make_solid_problem(Model<dim> &model, const Scene<dim> &scene)
   {
-    // With fictitious nodes peridynamics is the coupled model without elements.
-    return model.kind == ModelKind::peridynamics && !scene.peridynamics.completes_families() ?
-             make_bond_solid(model, scene) :
-             make_element_solid(model, scene);
+    return model.kind == ModelKind::peridynamics ? make_bond_solid(model, scene) :
+                                                   make_element_solid(model, scene);
   }
 
 

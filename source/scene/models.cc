@@ -117,10 +117,10 @@ namespace PeriDeal
       "What makes up for missing bonds. `auto`: for diffusion crack scaling beside insulated cracks that lie still, where it is the more accurate one for all models of the scene, else nothing; families of elastic peridynamics go on beyond planes of symmetry and all flat sides of a lattice, and beyond the whole boundary of a mesh from a file with nodes at vertices, at no more cost than their bonds; where bonds may break, in motion, and where a body without holes on a lattice is thin (a third as long as along another direction, or less, and 16 horizons at most), "
       "beyond free flat sides of a lattice in part, what they lack there and at its holes being made up for by the weights of their own bonds, and on meshes beyond sides with conditions, with such weights at all others; at rest on meshes beyond free sides in part, too, where the body behind them is thin (5 horizons, 3 at rims of holes, and half of its extent at most). Factors of bonds: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
-      "voids. Elasticity has `energy`, of stretches along the axes, `volume`, by the volumes of both ends' families, and `moments`, the smallest change of bonds "
+      "voids. Elasticity has `energy`, of stretches along the axes, and `moments`, the smallest change of bonds "
       "with which a uniform strain has its dilatation, stress and energy at each node whose bonds do not get negative factors by it; and `fictitious nodes` beyond flat sides, "
       "which continue the displacement linearly and complete the families inside.",
-      {"none", "crack scaling", "energy", "volume", "moments", "fictitious nodes", "auto"});
+      {"none", "crack scaling", "energy", "moments", "fictitious nodes", "auto"});
     declare(
       "Correction direction",
       EntryType::choice,
@@ -175,8 +175,7 @@ namespace PeriDeal
     surface_correction   = choice<SurfaceCorrection>("Surface correction");
     correction_direction = choice<CorrectionDirection>("Correction direction");
     if (physics != Physics::elasticity &&
-        (surface_correction == SurfaceCorrection::volume ||
-         surface_correction == SurfaceCorrection::moments || completes_families()))
+        (surface_correction == SurfaceCorrection::moments || completes_families()))
       error("Surface correction",
             "'" + text("Surface correction") +
               "' is for 'Physics = elasticity'; use 'none', 'crack scaling' or 'energy'.");
@@ -226,8 +225,7 @@ namespace PeriDeal
 
   bool Peridynamics::corrects_elastic_bonds() const
   {
-    return surface_correction == SurfaceCorrection::volume ||
-           surface_correction == SurfaceCorrection::energy ||
+    return surface_correction == SurfaceCorrection::energy ||
            surface_correction == SurfaceCorrection::moments;
   }
 

@@ -214,7 +214,7 @@ TEST(ElasticOperator, symmetric_and_without_resultant)
                     ModelKind::peridynamics);
   check_operator<2>({{"Domain/Cells", "8, 6"}, {"Domain/Nodes", "cell centers"}},
                     ModelKind::peridynamics);
-  for (const std::string law : {"volume", "energy", "moments"})
+  for (const std::string law : {"energy", "moments"})
     for (const std::string nodes : {"vertices", "cell centers"})
       {
         const Settings corrected{{"Peridynamics/Surface correction", law}, {"Domain/Nodes", nodes}};
@@ -272,7 +272,7 @@ TEST(ElasticOperator, same_on_all_processes)
   same_on_all<3>(graded, ModelKind::finite_elements, 1e-13);
   same_on_all<2>({{"Cracks/Segments", "0.2,0.4 ; 0.6,0.3"}}, ModelKind::peridynamics, 1e-13);
   same_on_all<3>({}, ModelKind::peridynamics, 1e-13);
-  for (const std::string law : {"none", "volume", "energy", "moments"})
+  for (const std::string law : {"none", "energy", "moments"})
     for (const std::string nodes : {"vertices", "cell centers"})
       {
         const Settings surface{{"Peridynamics/Surface correction", law},

@@ -48,7 +48,7 @@ namespace PeriDeal
       EXPECT_EQ(scene.heat->peridynamics.kernel_exponent, 2);
       EXPECT_EQ(scene.peridynamics.kernel_exponent, 0);
     }
-    for (const std::string correction : {"energy", "volume", "moments"})
+    for (const std::string correction : {"energy", "moments"})
       {
         Scene<2> scene;
         parse_scene<2>(elastic_scene<2>(with(

@@ -6,7 +6,6 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/laws/family_moments.h>
-#include <perideal/laws/family_volume.h>
 #include <perideal/laws/stretch_energy.h>
 
 #include <algorithm>
@@ -16,17 +15,6 @@
 
 using namespace PeriDeal;
 using namespace PeriDeal::OperatorTests;
-
-TEST(FamilyVolume, factors)
-{
-  EXPECT_DOUBLE_EQ(ball_volume(1, 2.), 4.);
-  EXPECT_DOUBLE_EQ(ball_volume(2, 2.), 4. * dealii::numbers::PI);
-  EXPECT_DOUBLE_EQ(ball_volume(3, 3.), 36. * dealii::numbers::PI);
-  EXPECT_DOUBLE_EQ(volume_factor(3., 3., 3.), 1.);
-  EXPECT_DOUBLE_EQ(volume_factor(3., 1.5, 1.5), 2.);
-  EXPECT_DOUBLE_EQ(volume_factor(3., 1.5, 3.), 4. / 3.);
-}
-
 
 TEST(StretchEnergy, sums_and_ellipsoid)
 {
@@ -212,6 +200,5 @@ TEST(SurfaceCorrection, refuses_energies_that_are_not_positive)
   };
   for (const std::string law : {"none", "moments"})
     EXPECT_NO_THROW(make(law));
-  for (const std::string law : {"volume", "energy"})
-    EXPECT_THROW(make(law), UserError) << law;
+  EXPECT_THROW(make("energy"), UserError);
 }

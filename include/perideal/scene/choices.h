@@ -65,8 +65,7 @@ namespace PeriDeal
     none,
     crack_scaling,
     energy,
-    volume, // this and the next: elasticity
-    moments,
+    moments, // this and the next: elasticity
     fictitious_nodes,
     automatic // elasticity; diffusion has none
   };

@@ -125,17 +125,6 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>                &nodes,
-                                                          const BodyParameters<dim> &body)
-  {
-    return std::make_unique<StateCoupling<dim>>(nodes,
-                                                body,
-                                                Zone<dim>(),
-                                                make_weighting(CouplingScheme::blending));
-  }
-
-
 #define PERIDEAL_INSTANTIATE(dim)                                                              \
   template void                           Coupling<dim>::require(const BodyParameters<dim> &); \
   template std::vector<bool>              hanging_nodes(const Nodes<dim> &);                   \
@@ -145,9 +134,7 @@ namespace PeriDeal
                                                         const Zone<dim> &,                     \
                                                         const CouplingScheme);                 \
   template std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &,                    \
-                                                              const BodyParameters<dim> &);    \
-  template std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim> &,               \
-                                                                   const BodyParameters<dim> &);
+                                                              const BodyParameters<dim> &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -5,9 +5,7 @@
 
 #include <perideal/base/interleaved.h>
 #include <perideal/laws/family_moments.h>
-#include <perideal/laws/family_volume.h>
 #include <perideal/laws/stretch_energy.h>
-#include <perideal/laws/volume_fraction.h>
 #include <perideal/operators/solid/surface_factors.h>
 
 #include <algorithm>
@@ -58,63 +56,6 @@ namespace PeriDeal
       for_each_member(bonds,
                       [&](const Tensor<1, dim> &xi, const double w) { q += w * xi.norm_square(); });
       return q;
-    }
-
-
-    /** The share of a neighbour's volume that counts. */
-    template <int dim>
-    double fraction_of(const Families<dim>  &bonds,
-                       const Peridynamics   &parameters,
-                       const Tensor<1, dim> &xi)
-    {
-      std::array<double, dim> center, edges;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          center[d] = xi[d];
-          edges[d]  = bonds.nodes().lattice() ? bonds.nodes().lattice()->spacing[d] :
-                                                bonds.nodes().smallest_spacing();
-        }
-      return weighted_shape<dim>(KernelShape::constant,
-                                 parameters.volume_fraction,
-                                 center,
-                                 edges,
-                                 bonds.weights().horizon());
-    }
-
-
-    template <int dim>
-    void correct_by_volume(const Families<dim> &bonds,
-                           const Peridynamics  &parameters,
-                           const StoredBonds   &stored,
-                           SurfaceFactors      &result)
-    {
-      const Nodes<dim> &nodes   = bonds.nodes();
-      Vector            volumes = node_vector(*nodes.partitioner(), 1);
-      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-        {
-          double sum = nodes.volume(i);
-          for (std::size_t k = stored.starts[i]; k < stored.starts[i + 1]; ++k)
-            sum += fraction_of(bonds,
-                               parameters,
-                               bonds.neighbors().bond_vector(i, stored.neighbors[k])) *
-                   nodes.volume(stored.neighbors[k]);
-          volumes.local_element(i) = sum;
-        }
-      volumes.update_ghost_values();
-      double complete = ball_volume(dim, bonds.weights().horizon());
-      if (nodes.lattice())
-        {
-          complete = nodes.lattice()->cell_volume();
-          for_each_member(bonds, [&](const Tensor<1, dim> &xi, const double) {
-            complete += nodes.lattice()->cell_volume() * fraction_of(bonds, parameters, xi);
-          });
-        }
-      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-        for (std::size_t k = stored.starts[i]; k < stored.starts[i + 1]; ++k)
-          result.dilatation[k] = volume_factor(complete,
-                                               volumes.local_element(i),
-                                               volumes.local_element(stored.neighbors[k]));
-      result.extension = result.dilatation;
     }
 
 
@@ -452,9 +393,7 @@ namespace PeriDeal
     result.extension = result.dilatation;
     result.q         = node_vector(*nodes.partitioner(), 1);
     result.q         = complete_q(bonds);
-    if (parameters.surface_correction == SurfaceCorrection::volume)
-      correct_by_volume(bonds, parameters, stored, result);
-    else if (parameters.surface_correction == SurfaceCorrection::energy)
+    if (parameters.surface_correction == SurfaceCorrection::energy)
       correct_by_energy(bonds, stored, result);
     else
       correct_by_moments(bonds, stored, result);

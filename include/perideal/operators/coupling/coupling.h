@@ -182,12 +182,4 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim>                &nodes,
                                                      const BodyParameters<dim> &body);
-
-  /**
-   * Families of a solid everywhere, with nothing left to the elements: peridynamics alone.
-   * Otherwise the same.
-   */
-  template <int dim>
-  std::unique_ptr<Coupling<dim>> make_families_everywhere(Nodes<dim>                &nodes,
-                                                          const BodyParameters<dim> &body);
 } // namespace PeriDeal

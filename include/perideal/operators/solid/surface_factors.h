@@ -27,7 +27,6 @@ namespace PeriDeal
    *   theta_i = d sum_j a W x e/(V_i q_i),
    *   energy of i = 1/2 c/d theta_i^2 V_i + 1/2 b/q_i sum_j s W e^2
    *
-   * volume    a = s = 2 V_0/(V_i + V_j), q that of a complete family (laws/family_volume.h)
    * energy    a, s by ellipsoids from theta and from the energy of extensions under unit stretches
    *           along the axes, against those of a complete family; q of a complete one
    *           (laws/stretch_energy.h)
