@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 namespace PeriDeal
 {
@@ -30,7 +31,7 @@ namespace PeriDeal
     , bins(reach)
   {
     for (const BoundaryFacet<dim> &facet : gather_boundary_facets(nodes.dof_handler()))
-      facets.push_back({facet, goes_on(facet.side), false, {}});
+      facets.push_back({facet, goes_on(facet.side), {}, {}});
     take_out_planes(symmetry);
     bins = bins_of_facets<dim>(facets, reach);
     find_corner_normals();
@@ -121,31 +122,32 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool BoundaryFacets<dim>::is_hollow(const unsigned int facet) const
+  bool BoundaryFacets<dim>::is_hollow(const unsigned int facet, const double length) const
   {
-    constexpr double slack = 1e-6;
-    const Facet     &own   = facets[facet];
-    double           bent = 0., size = 0.;
+    constexpr double far  = 25.;
+    const Facet     &own  = facets[facet];
+    double           bent = 0., size = 0.; // of the edges: the radius is the one over the other
     for (unsigned int k = 1; k < dim; ++k)
       {
         const Tensor<1, dim> edge = own.corners[k] - own.corners[0];
-        bent += (own.corner_normals[k] - own.corner_normals[0]) * edge;
-        size += edge.norm();
+        bent -= (own.corner_normals[k] - own.corner_normals[0]) * edge;
+        size += edge.norm_square();
       }
-    return bent < -slack * size;
+    return bent * far * length > size;
   }
 
 
   template <int dim>
-  double BoundaryFacets<dim>::thickness_behind(const unsigned int facet, const double most) const
+  std::pair<double, double> BoundaryFacets<dim>::opposite(const unsigned int facet,
+                                                          const double       most) const
   {
-    constexpr double opposite = 0.5, slack = 1e-3;
+    constexpr double slack  = 1e-3;
     const Facet     &own    = facets[facet];
     Point<dim>       middle = own.corners[0];
     for (unsigned int k = 1; k < dim; ++k)
       middle += (own.corners[k] - middle) / (k + 1.);
-    double found = std::numeric_limits<double>::infinity();
-    for (double passed = 0.; passed < most && found > passed; passed += reach)
+    std::pair<double, double> found{std::numeric_limits<double>::infinity(), 0.};
+    for (double passed = 0.; passed < most + reach && found.first > passed; passed += reach)
       {
         // Beyond a plane of symmetry the way goes on in the body's mirror image: it is folded.
         Point<dim>     start = middle;
@@ -159,38 +161,48 @@ namespace PeriDeal
             }
         bins.visit_near(start + passed * way, [&](const unsigned int f) {
           const double slope = facets[f].normal * way;
-          if (slope < opposite)
+          if (slope < 1e-6)
             return;
           const double     length = facets[f].normal * (facets[f].corners[0] - start) / slope;
           const Point<dim> at     = start + length * way;
-          if (length > slack * reach && length < found && foot_on(at, f).distance < slack * reach)
-            found = length;
+          if (length > slack * reach && length < found.first &&
+              foot_on(at, f).distance < slack * reach)
+            found = {length, slope};
         });
       }
-    return found < most ? found : std::numeric_limits<double>::infinity();
+    return found.first < most ? found : std::make_pair(std::numeric_limits<double>::infinity(), 0.);
   }
 
 
   template <int dim>
-  double BoundaryFacets<dim>::go_on_in_part(
-    const std::function<bool(const types::boundary_id)> &free,
-    const double                                         most)
+  void BoundaryFacets<dim>::go_on_in_part(ThinParts &parts)
   {
-    constexpr double of_hollow = 0.6;
-    const double     widest    = extent() / 2.;
-    double           thinnest  = std::numeric_limits<double>::infinity();
+    constexpr double  of_hollow = 0.6, facing = 0.75, parallel = 0.97, slack = 1e-6;
+    const double      widest = extent() / 2.;
+    std::vector<bool> is_thin(facets.size(), false);
     for (unsigned int f = 0; f < facets.size(); ++f)
-      if (free(facets[f].side))
+      if (parts.are_free(facets[f].side))
         {
-          const double limit =
-            (1. - 1e-6) * std::min((is_hollow(f) ? of_hollow : 1.) * most, widest);
-          if (const double thickness = thickness_behind(f, limit); thickness < limit)
-            {
-              facets[f].in_part = true;
-              thinnest          = std::min(thinnest, thickness);
-            }
+          const double most             = (is_hollow(f, parts.most) ? of_hollow : 1.) * parts.most;
+          const auto [thickness, slope] = opposite(f, (1. - slack) * std::min(most, widest));
+          is_thin[f]                    = slope > facing;
+          parts.any                     = parts.any || (is_thin[f] && facets[f].goes_on);
+          if (slope > parallel)
+            parts.thinnest = std::min(parts.thinnest, thickness);
         }
-    return thinnest;
+    // Of a node the mean of its facets, so that it does not matter on which of them feet are.
+    for (unsigned int f = 0; f < facets.size(); ++f)
+      for (unsigned int k = 0; k < dim; ++k)
+        {
+          double thin = 0., all = 0.;
+          for (const unsigned int g : touching[f])
+            if (facets[g].normal * facets[f].normal > alike && ends_at(g, facets[f].nodes[k]))
+              {
+                all += facets[g].area;
+                thin += is_thin[g] ? facets[g].area : 0.;
+              }
+          facets[f].thin[k] = thin / all;
+        }
   }
 
 
@@ -348,10 +360,17 @@ namespace PeriDeal
   template <int dim>
   double BoundaryFacets<dim>::share(const std::vector<Foot> &through) const
   {
-    const auto n_free = std::count_if(through.begin(), through.end(), [&](const Foot &foot) {
-      return facets[foot.facet].in_part;
-    });
-    return n_free == 0 ? 1. : n_free > 1 ? 0. : through.size() > 1 ? 0.075 : 0.15;
+    constexpr double in_part = 0.15;
+    double           whole = 1., one = 0.; // no facet is thin, one of them is
+    for (const Foot &foot : through)
+      {
+        double thin = 0.;
+        for (unsigned int k = 0; k < dim; ++k)
+          thin += foot.weights[k] * facets[foot.facet].thin[k];
+        one = one * (1. - thin) + whole * thin;
+        whole *= 1. - thin;
+      }
+    return whole + (through.size() > 1 ? 0.5 : 1.) * in_part * one;
   }
 
 

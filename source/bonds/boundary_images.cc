@@ -336,7 +336,7 @@ namespace PeriDeal
       {
         BoundaryFacets<dim> facets(nodes, symmetry, goes_on, reach);
         if (thin != nullptr)
-          thin->thinnest = facets.go_on_in_part(thin->sides, thin->most);
+          facets.go_on_in_part(*thin);
         const ImageFinder<dim> finder(nodes, facets, reach);
         for (unsigned int m = 0; m < nodes.n_local(); ++m)
           finder.find(m, images);

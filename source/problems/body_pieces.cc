@@ -399,7 +399,7 @@ namespace PeriDeal
       return "";
     if (run.stepper)
       return text(deep, t) +
-             "with small displacements separate pieces do not press on each other: they pass through each other. With 'Models = peridynamics' and 'Kinematics = full' in section 'Elasticity' they press.";
+             "nothing is between them here: they pass through each other. With 'Models = peridynamics', 'Kinematics = full' and 'Contact = true' in section 'Elasticity' and 'Stepper = verlet' in section 'Time' they press on each other.";
     const std::string at_rest = "at rest separate pieces do not press on each other; ";
     AssertThrow(
       run.scene.elasticity.text("Contact") == "false",

@@ -295,7 +295,7 @@ namespace PeriDeal
           context.after_step(next);
       }
     span.is_open = false;
-    if (!scene.elasticity.has_full_kinematics())
+    if (!(scene.elasticity.has_full_kinematics() && scene.elasticity.contact))
       note_overlap(*this, to, context);
   }
 

@@ -422,17 +422,20 @@ namespace PeriDeal
   std::string note_on_thin_parts(const double n_cells, const double m, const bool ends)
   {
     constexpr double tolerable = 0.05;
-    const double more = ends ? 0.3 * std::pow(2. / n_cells, 8.) :
-                               0.045 * std::pow(m / 3., 1.4) * std::pow(4. / n_cells, 3.8),
-                 less = ends ? std::min(0.15, 0.24 * (m - 2.4) / n_cells) :
-                               0.5 * (m / 3. - 1.) / n_cells;
+    const double     more      = ends ? 0.3 * std::pow(2. / n_cells, 8.) :
+                                        0.045 * std::pow(m / 3., 1.4) * std::pow(4. / n_cells, 3.8),
+                 less          = ends ? std::min(0.15, 0.24 * (m - 2.4) / n_cells) :
+                                        0.5 * (m / 3. - 1.) / n_cells;
     if (more < tolerable && less < tolerable)
       return {};
+    const std::string size = n_cells < 2. || more > 1. ?
+                               "much too stiff" :
+                               "about " + rounded_text(more < tolerable ? 1. - less : 1. + more) +
+                                 " times as stiff as they should be";
     return "behind free sides this mesh is " + rounded_text(n_cells) +
-           " cells thick where it is thinnest. With m = " + rounded_text(m) +
-           " strips of that thickness are about " +
-           rounded_text(more < tolerable ? 1. - less : 1. + more) +
-           " times as stiff as they should be in bending (not where they are pulled). Smaller cells, with a smaller 'Horizon' in section 'Peridynamics', make that less; 'Models = finite elements' has none of it.";
+           " cells of mean size thick where it is thinnest. With m = " + rounded_text(m) +
+           " strips of that thickness with two free long sides are " + size +
+           " in bending (not where they are pulled). Smaller cells, with a smaller 'Horizon' in section 'Peridynamics', make that less; 'Models = finite elements' has none of it.";
   }
 
 

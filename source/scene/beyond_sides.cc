@@ -305,7 +305,7 @@ namespace PeriDeal
     if (completes_mesh(body))
       return takes_steps(body) ?
                "fictitious nodes beyond sides with conditions, weights of bonds elsewhere" :
-               "fictitious nodes beyond the boundary, weights of bonds at free sides of thin parts";
+               "fictitious nodes beyond the boundary, in part at free sides of thin parts";
     const auto               beyond = beyond_sides(body);
     std::vector<std::string> names;
     for (unsigned int side = 0; side < 2 * dim; ++side)

@@ -218,7 +218,7 @@ def told(run, words):
     return found[0] if found else None
 
 
-MESH_BENDING = r"strips of that thickness are about ([0-9.]+) times as stiff"
+MESH_BENDING = r"strips of that thickness with two free long sides are about ([0-9.]+) times as stiff"
 BENDING = r"about ([0-9.]+) times as stiff as it should be in bending"
 
 

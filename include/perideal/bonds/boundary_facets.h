@@ -8,6 +8,8 @@
 
 #include <array>
 #include <functional>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -19,6 +21,24 @@ namespace PeriDeal
     double                     at;
     bool                       above; // the body lies below it
     dealii::types::boundary_id side;
+  };
+
+
+  /**
+   * Families go on in part beyond facets of free sides where the body behind them, along their
+   * normal, is thinner than @p most (at hollow rims, as of round holes, than 0.6 of that) and than
+   * half of the extent of all along an axis, with the mirror image beyond planes of symmetry. What
+   * lies opposite is within 41 degrees of parallel; else the body is no strip there.
+   */
+  struct ThinParts
+  {
+    std::function<bool(const dealii::types::boundary_id)> are_free; // sides
+    double                                                most;
+
+    // Found: whether families go on in part anywhere, and the least thickness between facets that
+    // are parallel within 14 degrees, on sides that go on or do not.
+    bool   any      = false;
+    double thinnest = std::numeric_limits<double>::infinity();
   };
 
 
@@ -49,14 +69,7 @@ namespace PeriDeal
                    const std::function<bool(const dealii::types::boundary_id)> &goes_on,
                    const double                                                 reach);
 
-    /**
-     * Families go on in part beyond facets of sides that are @p free where the body behind them,
-     * along their normal, is thinner than @p most (at hollow rims, as of holes, than 0.6 of that)
-     * and than half of its extent, all with the mirror image beyond planes of symmetry. Returns the
-     * least thickness behind these, infinity if there are none.
-     */
-    double go_on_in_part(const std::function<bool(const dealii::types::boundary_id)> &free,
-                         const double                                                 most);
+    void go_on_in_part(ThinParts &parts);
 
     const std::vector<SymmetryPlane> &planes() const
     {
@@ -93,7 +106,8 @@ namespace PeriDeal
 
     /**
      * Of an image through these facets: what of it counts. 0.15 through one beyond which families
-     * go on in part, half of that where they go on wholly beyond another, nothing through two.
+     * go on in part, half of that where they go on wholly beyond another, nothing through two;
+     * between facets that differ the mean of both.
      */
     double share(const std::vector<Foot> &through) const;
 
@@ -109,14 +123,18 @@ namespace PeriDeal
   private:
     struct Facet : BoundaryFacet<dim>
     {
-      bool                                    goes_on, in_part = false;
+      bool                                    goes_on;
+      std::array<double, dim>                 thin{}; // at the corners, from 0 to 1
       std::array<dealii::Tensor<1, dim>, dim> corner_normals;
     };
 
-    /** Its centre of curvature lies outside the body. */
-    bool is_hollow(const unsigned int facet) const;
-    /** From the middle of a facet to what lies opposite; more than that is infinity. */
-    double thickness_behind(const unsigned int facet, const double most) const;
+    /** Its centre of curvature lies outside the body, within 25 of these lengths. */
+    bool is_hollow(const unsigned int facet, const double length) const;
+    /**
+     * From the middle of a facet to what lies opposite within a length, and the cosine of the angle
+     * there; else infinity and 0.
+     */
+    std::pair<double, double> opposite(const unsigned int facet, const double most) const;
     /** Of the body, with its mirror image. */
     double extent() const;
     void   take_out_planes(const std::vector<dealii::types::boundary_id> &symmetry);

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/bonds/boundary_facets.h>
 #include <perideal/bonds/fictitious_extension.h>
 
 #include <array>
@@ -35,15 +36,6 @@ namespace PeriDeal
    * farther has no bond.
    */
   double halo_of_images(const double reach);
-
-
-  /** Families go on in part beyond such sides: BoundaryFacets::go_on_in_part(). */
-  struct ThinParts
-  {
-    std::function<bool(const dealii::types::boundary_id)> sides;
-    double                                                most;
-    double                                                thinnest; // found
-  };
 
 
   /**

@@ -41,7 +41,7 @@ namespace PeriDeal
    * In motion, where bonds may break, and in slender bodies on a lattice, families of an elastic
    * body that end elsewhere, at voids and free sides, are completed by their own bonds (on a
    * lattice FamilyCompletion, on a mesh FictitiousBondSearch::on_mesh()), with `Surface correction
-   * = auto`. Not collective.
+   * = auto`; so are those at thin parts of meshes at rest (ThinParts). Not collective.
    */
   template <int dim>
   bool completes_at_surfaces(const BodyParameters<dim> &body);

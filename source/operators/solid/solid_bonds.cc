@@ -38,13 +38,12 @@ namespace PeriDeal
                                         thin);
           };
           ThinParts  thin{[&](const types::boundary_id side) { return is_free(body, side); },
-                         thin_on_mesh(body),
-                         0.};
+                         thin_on_mesh(body)};
           const auto images =
             beyond_sides([&](const types::boundary_id side) { return goes_on_beyond(body, side); },
                          &thin);
           thinnest          = thin.thinnest;
-          const bool ends   = completes_at_surfaces(body) || thin.thinnest < thin.most;
+          const bool ends   = completes_at_surfaces(body) || thin.any;
           auto       beyond = std::make_unique<FictitiousBonds<dim>>(
             families,
             images,
