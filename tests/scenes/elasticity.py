@@ -260,14 +260,14 @@ def surface():
     for name, value, gap in (
         ("plate: end", end / 0.01, -1.011),
         ("plate: strain at the end", (end - before) / 0.05 / 5e-3, -1.011),
-        ("plate: sxx at the free side", plate.probe(PD, [1, 1], column="sxx"), -0.777),
-        ("cantilever: end", with_surface("cantilever.prm", law).probe(PD, (10, 0), column="uy") / beam, -5.242),
+        ("plate: sxx at the free side", plate.probe(PD, [1, 1], column="sxx"), 0),
+        ("cantilever: end", with_surface("cantilever.prm", law).probe(PD, (10, 0), column="uy") / beam, -6.189),
     ):
         table.add(f"{law}: {name}", value, 1 + gap / 100, absolute=2e-4)
     balanced(table, plate)
     twisted = with_surface("torsion.prm", law)
     table.add(f"{law}: torsion: torque", 8 * twisted.model(PD)["strain energy"] / 0.005 / moment, 1 + 1.181 / 100, absolute=2e-4)
-    table.add(f"{law}: torsion: stress at the face", twisted.probe(PD, (0.5, 0, 0.25), column="syz") / shear, 1 - 0.267 / 100, absolute=2e-4)
+    table.add(f"{law}: torsion: stress at the face", twisted.probe(PD, (0.5, 0, 0.25), column="syz") / shear, 1 - 0.884 / 100, absolute=2e-4)
     table.add("auto: torsion: torque", 8 * with_surface("torsion.prm", "auto").model(PD)["strain energy"] / 0.005 / moment, 1 + 1.181 / 100, absolute=2e-4)
     table.show()
 

@@ -139,7 +139,7 @@ def mesh():
         gaps[law] = [max(abs(value / exact - 1) for value in values) for values, exact in (
             ((right["ux"], top["uy"]), opening), ((right["syy"], top["sxx"]), hoop))]
     check("in part at free sides of thin parts" in run.model(PD)["settings"]["surface correction"], "the report names what is done")
-    table.add("auto: the bore opens by 1.3 % less", gaps["auto"][0], 0, absolute=0.015)
+    table.add("auto: the bore opens by 1.6 % less", gaps["auto"][0], 0, absolute=0.018)
     table.add("auto: stress along its rim", gaps["auto"][1], 0, absolute=0.07)
     check(gaps["none"][0] > 0.08 and gaps["none"][1] > 0.6, f"cut families are off by 9 % and 67 %: {gaps['none']}")
     table.show()
