@@ -394,9 +394,10 @@ namespace PeriDeal
   void number_along_lattice(DoFHandler<dim> &dof_handler, const Domain<dim> &domain)
   {
     const std::optional<Lattice<dim>> lattice = lattice_of(domain, !is_vertex_element(dof_handler));
-    const unsigned int                n_owned = dof_handler.locally_owned_dofs().n_elements();
-    std::vector<std::size_t>          site(n_owned);
-    const bool                        vertices = is_vertex_element(dof_handler);
+    Assert(lattice, ExcMessage("Only a lattice has an order of nodes along it."));
+    const unsigned int       n_owned = dof_handler.locally_owned_dofs().n_elements();
+    std::vector<std::size_t> site(n_owned);
+    const bool               vertices = is_vertex_element(dof_handler);
     for_each_owned_dof(dof_handler,
                        [&](const unsigned int node, const auto &cell, const unsigned int v) {
                          const auto index =

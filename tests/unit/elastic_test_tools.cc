@@ -22,7 +22,8 @@ namespace PeriDeal
           std::unique_ptr<Coupling<dim>> coupling;
           if (model == ModelKind::coupled)
             {
-              number_along_lattice(handler, scene.domain);
+              if (scene.domain.has_lattice())
+                number_along_lattice(handler, scene.domain);
               nodes    = std::make_unique<Nodes<dim>>(handler,
                                                    scene.domain,
                                                    scene.cracks,
