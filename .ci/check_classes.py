@@ -15,7 +15,7 @@ import os
 import re
 import sys
 
-from check_includes import ROOT, files
+from check_includes import ROOT, files, say
 
 LIMITS = {"functions": 25, "members": 12, "virtual functions": 12, "sources": 2}
 
@@ -184,13 +184,7 @@ def main():
         for path in sorted(by_file):
             print(f'    "{path}": {{' + ", ".join(f'"{name}": {numbers}' for name, numbers in sorted(by_file[path].items())) + "},")
         return 0
-    for finding in findings:
-        print(finding)
-    if findings:
-        print(f"{len(findings)} findings in {len(found)} classes (.ci/check_classes.py).")
-        return 1
-    print(f"Widths of classes: {len(found)} in order, {len(wider)} of them wider than the limits, as they were.")
-    return 0
+    return say(findings, f"{len(found)} classes (.ci/check_classes.py)", f"Widths of classes: {len(found)} in order, {len(wider)} of them wider than the limits, as they were.")
 
 
 if __name__ == "__main__":

@@ -155,6 +155,14 @@ def check_lists():
             yield f"{list_file}: {name} does not exist"
 
 
+def say(findings, where, in_order):
+    """Print what was found, or that all is in order; the exit status."""
+    for finding in findings:
+        print(finding)
+    print(f"{len(findings)} findings in {where}." if findings else in_order)
+    return 1 if findings else 0
+
+
 def main():
     findings = []
     n_files = 0
@@ -170,13 +178,7 @@ def main():
                 findings += check_comments(path, lines)
                 findings += check_words(path, lines)
     findings += check_lists()
-    for finding in findings:
-        print(finding)
-    if findings:
-        print(f"{len(findings)} findings in {n_files} files (.ci/check_includes.py).")
-        return 1
-    print(f"Include directions, words, lengths, comments and licence headers: {n_files} files in order.")
-    return 0
+    return say(findings, f"{n_files} files (.ci/check_includes.py)", f"Include directions, words, lengths, comments and licence headers: {n_files} files in order.")
 
 
 if __name__ == "__main__":
