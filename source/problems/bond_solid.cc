@@ -42,7 +42,7 @@ namespace PeriDeal
         states                       = std::make_unique<StateOperator<dim>>(*node_set, scene);
         const SolidBonds<dim> &bonds = states->bonds();
         if (families_end(scene))
-          stiffer = surface_stiffness(bonds.families, bonds.laws, bonds.rows, bonds.beyond.get());
+          stiffer = surface_stiffness(bonds);
         if (bonds.thinnest < std::numeric_limits<double>::infinity())
           {
             double volume = 0.;
@@ -82,14 +82,14 @@ namespace PeriDeal
       std::vector<BondBreak> breaks() const override
       {
         const auto            &layout = *node_set->partitioner();
-        const BondState       &state  = states->breaking().broken_state();
+        const BondRows<dim>   &rows   = states->bonds().rows.body;
         std::vector<BondBreak> list;
         std::size_t            n_known = 0;
-        for (const auto &[number, time] : state.marked_since(n_known))
+        for (const auto &[number, time] : rows.state.marked_since(n_known))
           {
-            const unsigned int i = states->bonds().rows.node_of(number),
-                               j = states->bonds().rows.neighbor(number);
-            if (state.is_broken(number) && layout.local_to_global(i) < layout.local_to_global(j))
+            const unsigned int i = rows.node_of(number), j = rows.neighbors[number];
+            if (rows.state.is_broken(number) &&
+                layout.local_to_global(i) < layout.local_to_global(j))
               list.push_back({i, j, time});
           }
         return list;
@@ -264,7 +264,7 @@ namespace PeriDeal
       {
         constexpr double  tolerable = 1e-8;
         const std::string entry     = "'Surface correction = moments' in section 'Peridynamics' ";
-        const unsigned long long n  = states->bonds().rows.n_uncorrected;
+        const unsigned long long n  = states->bonds().corrections.n_left;
         std::vector<std::string> list;
         for (const std::string &note :
              {note_on_cut_sides(scene), note_on_stiff_surfaces(), note_on_held_rows(scene)})
@@ -279,11 +279,11 @@ namespace PeriDeal
           list.push_back(
             entry + "leaves " + std::to_string(n) + " of " + std::to_string(node_set->n_global()) +
             " nodes as they are, whose bonds would get negative factors, as in convex corners and beside the ends of cracks.");
-        if (states->bonds().rows.moments_gap > tolerable)
+        if (states->bonds().corrections.gap > tolerable)
           list.push_back(
             entry +
             "has not found all factors: moments of families differ from those of a complete one by up to " +
-            number_text(states->bonds().rows.moments_gap) + " of them.");
+            number_text(states->bonds().corrections.gap) + " of them.");
         const auto  &family   = states->bonds().families.weights().members();
         const double thinnest = states->bonds().thinnest;
         for (const std::string &note :

@@ -66,7 +66,7 @@ namespace
         const Tensor<1, dim> xi = bonds.families.neighbors().bond_vector(i, bond.neighbor);
         const double         limit =
           (bond.moment * xi) * std::min(critical[i], critical[bond.neighbor]) * (1. + 1e-12);
-        if (op.breaking().broken_state().is_whole(bond.number) &&
+        if (bonds.rows.is_whole(bond.number) &&
             bonds.kinematics.extension_moment(u.begin(), i, bond) > limit)
           ++n;
       });
@@ -124,14 +124,14 @@ namespace
     EXPECT_NEAR(a.released, b.released, 1e-6 * b.released);
     EXPECT_EQ(a.places.first, b.places.first);
     EXPECT_EQ(lattice->states->size().form, "lattice");
-    EXPECT_DOUBLE_EQ(sum_of_all(lattice->states->bonds().rows.n_bonds()),
-                     sum_of_all(stored->states->bonds().rows.n_bonds()));
+    EXPECT_DOUBLE_EQ(sum_of_all(lattice->states->bonds().rows.n_bonds),
+                     sum_of_all(stored->states->bonds().rows.n_bonds));
     const std::vector<double> damage          = lattice->states->breaking().damage(),
                               expected_damage = stored->states->breaking().damage();
     for (std::size_t i = 0; i < damage.size(); ++i)
       EXPECT_NEAR(damage[i], expected_damage[i], 1e-12) << file;
-    EXPECT_LT(sum_of_all(lattice->states->bonds().rows.n_stored()),
-              0.6 * sum_of_all(stored->states->bonds().rows.n_stored()))
+    EXPECT_LT(sum_of_all(lattice->states->bonds().rows.body.size()),
+              0.6 * sum_of_all(stored->states->bonds().rows.body.size()))
       << file;
   }
 

@@ -81,7 +81,7 @@ namespace
           energy += 0.25 * bond.spring * product * product;
           force += (bond.spring * product + tau.local_element(i) + tau.local_element(j)) *
                    kinematics.length(bond) / along.norm() * along;
-          if (body.states->breaking().broken_state().is_whole(bond.number))
+          if (bonds.rows.is_whole(bond.number))
             stretch = std::max(stretch, std::abs(along.norm() / xi.norm() - 1.));
         });
         gap_of_tau =

@@ -4,10 +4,6 @@
 // Families of the linear peridynamic solid that go on beyond the sides (`Surface correction =
 // auto`).
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
-#include <perideal/operators/solid/solid_matrices.h>
-
 #include <cmath>
 
 #include "elastic_scene_tools.h"
@@ -252,35 +248,6 @@ TEST(FictitiousBonds, bonds_break_as_in_the_whole_body)
           EXPECT_NEAR(of_half.local_element(2 * i + d), of_whole.local_element(2 * k + d), 1e-12);
         EXPECT_NEAR(damage_half[i], damage[k], 1e-12);
       });
-    }
-}
-
-
-TEST(FictitiousBonds, diagonal_is_that_of_the_matrix)
-{
-  for (const Settings &nodes : {Settings(), centers})
-    {
-      const Body<2>                          body(completed<2>() + nodes +
-                           Settings{{"Boundary conditions/Displacement", "left: 0, free"},
-                                    {"Boundary conditions/Symmetry", "bottom"}},
-                         ModelKind::peridynamics);
-      dealii::TrilinosWrappers::SparseMatrix matrix;
-      const Vector                          &diagonal = body.op().diagonal();
-      assemble_matrix(body.states->bonds(),
-                      body.states->breaking().broken_state(),
-                      *diagonal.get_partitioner(),
-                      matrix);
-      Vector free(diagonal);
-      free = 1.;
-      body.op().clear_constrained(free);
-      for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
-        if (free.local_element(i) > 0.)
-          {
-            EXPECT_NEAR(matrix.diag_element(diagonal.get_partitioner()->local_to_global(i)) /
-                          diagonal.local_element(i),
-                        1.,
-                        1e-12);
-          }
     }
 }
 

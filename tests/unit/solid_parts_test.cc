@@ -48,17 +48,18 @@ namespace
                        ModelKind::peridynamics);
     };
     const Body<dim>       a = body_of("stored"), b = body_of("lattice");
-    const SolidRows<dim> &stored = a.states->bonds().rows, &lattice = b.states->bonds().rows;
+    const BondTable<dim> &stored = a.states->bonds().rows, &lattice = b.states->bonds().rows;
     ASSERT_EQ(a.nodes->n_owned(), b.nodes->n_owned());
-    EXPECT_FALSE(stored.has_lattice());
-    EXPECT_TRUE(lattice.has_lattice());
-    EXPECT_EQ(sum_of_all(lattice.n_stored()) > 0., !more.empty());
-    EXPECT_LT(sum_of_all(lattice.n_stored()), sum_of_all(stored.n_stored()));
-    EXPECT_DOUBLE_EQ(stored.n_bonds(), 0.5 * stored.n_stored());
-    EXPECT_DOUBLE_EQ(stored.n_bonds(), lattice.n_bonds());
+    const SolidSums<dim> &sums = a.states->bonds().sums, &of_lattice = b.states->bonds().sums;
+    EXPECT_FALSE(sums.has_lattice());
+    EXPECT_TRUE(of_lattice.has_lattice());
+    EXPECT_EQ(sum_of_all(lattice.body.size()) > 0., !more.empty());
+    EXPECT_LT(sum_of_all(lattice.body.size()), sum_of_all(stored.body.size()));
+    EXPECT_DOUBLE_EQ(stored.n_bonds, 0.5 * stored.body.size());
+    EXPECT_DOUBLE_EQ(stored.n_bonds, lattice.n_bonds);
     for (unsigned int i = 0; i < a.nodes->n_owned(); ++i)
       {
-        std::vector<typename SolidRows<dim>::Bond> found;
+        std::vector<SolidBond<dim>> found;
         lattice.for_each(i, [&](const auto &bond) { found.push_back(bond); });
         std::size_t k = 0;
         stored.for_each(i, [&](const auto &bond) {
@@ -73,15 +74,15 @@ namespace
     const Vector u = local_values(a, bumpy_vector<dim>);
     Vector       y(u), z(u);
     Vector       tau(a.nodes->partitioner()), tau_of_lattice(tau);
-    stored.find_tensions(tau.begin(), u.begin());
-    lattice.find_tensions(tau_of_lattice.begin(), u.begin());
+    sums.find_tensions(tau.begin(), u.begin());
+    of_lattice.find_tensions(tau_of_lattice.begin(), u.begin());
     tau.update_ghost_values();
     tau_of_lattice.update_ghost_values();
     for (const bool with_tau : {false, true})
       {
-        stored.find_forces(y.begin(), u.begin(), with_tau ? tau.begin() : nullptr);
-        lattice.find_tensions(tau_of_lattice.begin(), u.begin());
-        lattice.find_forces(z.begin(), u.begin(), with_tau ? tau_of_lattice.begin() : nullptr);
+        sums.find_forces(y, u.begin(), with_tau ? tau.begin() : nullptr);
+        of_lattice.find_tensions(tau_of_lattice.begin(), u.begin());
+        of_lattice.find_forces(z, u.begin(), with_tau ? tau_of_lattice.begin() : nullptr);
         const double size = y.linfty_norm();
         y -= z;
         EXPECT_GT(size, 0.);
@@ -191,8 +192,8 @@ TEST(SolidParts, rotations_stretch_bonds_of_linear_kinematics_alone)
 TEST(SolidParts, images_pass_on_what_they_are_pulled_by)
 {
   const Body<2> body(box<2>() + completed, ModelKind::peridynamics);
-  ASSERT_TRUE(body.states->bonds().beyond);
-  const FictitiousImages<2> &images = body.states->bonds().beyond->images();
+  ASSERT_TRUE(body.states->bonds().ends.images);
+  const FictitiousImages<2> &images = *body.states->bonds().ends.images;
   const Vector               u      = local_values(body, bumpy_vector<2>);
   Vector                     y;
   body.op().initialize_vector(y);
@@ -259,23 +260,23 @@ TEST(SolidParts, what_breaks_is_marked_and_bears_nothing)
   const auto   &breaking = body.states->breaking();
   const auto   &rows     = body.states->bonds().rows;
   ASSERT_NE(breaking.history(), nullptr);
-  EXPECT_EQ(breaking.broken_state().size(), rows.n_stored());
+  EXPECT_EQ(rows.body.state.size(), rows.body.size());
   EXPECT_EQ(breaking.history()->n_broken, 0u);
   EXPECT_TRUE(breaking.history()->places.first.empty());
-  const double n_bonds = sum_of_all(rows.n_bonds());
+  const double n_bonds = sum_of_all(rows.n_bonds);
   const Vector u       = body.values([](const Point<2> &p) { return Point<2>(0.1 * p[0], 0.); });
   const auto   n       = body.op().break_bonds(u, 0.25);
   EXPECT_GT(n, 0u);
   EXPECT_EQ(breaking.history()->n_broken, n);
   EXPECT_EQ(breaking.history()->places.first.size(), 2u);
-  EXPECT_DOUBLE_EQ(sum_of_all(breaking.broken_state().count(BondState::broken)), 2. * n);
-  EXPECT_DOUBLE_EQ(sum_of_all(rows.n_bonds()), n_bonds - n);
+  EXPECT_DOUBLE_EQ(sum_of_all(rows.body.state.count(BondState::broken)), 2. * n);
+  EXPECT_DOUBLE_EQ(sum_of_all(rows.n_bonds), n_bonds - n);
   for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
     rows.for_each(i, [&](const auto &bond) {
-      const bool is_whole = breaking.broken_state().is_whole(bond.number);
+      const bool is_whole = rows.body.state.is_whole(bond.number);
       EXPECT_EQ(bond.spring != 0., is_whole);
       EXPECT_EQ(bond.moment.norm() != 0., is_whole);
-      EXPECT_EQ(breaking.broken_state().since(bond.number),
+      EXPECT_EQ(rows.body.state.since(bond.number),
                 is_whole ? std::numeric_limits<double>::infinity() : 0.25);
     });
   const Body<2> whole(box<2>(), ModelKind::peridynamics);

@@ -106,7 +106,7 @@ namespace
       << what;
     const auto n_stored = [](const Body<dim> &body) {
       return static_cast<double>(
-        dealii::Utilities::MPI::sum(body.states->bonds().rows.n_stored(), MPI_COMM_WORLD));
+        dealii::Utilities::MPI::sum(body.states->bonds().rows.body.size(), MPI_COMM_WORLD));
     };
     EXPECT_EQ(n_stored(stored), 2. * static_cast<double>(stored.states->size().bonds)) << what;
     EXPECT_LE(n_stored(lattice), stored_share * n_stored(stored)) << what;

@@ -153,8 +153,8 @@ namespace
     const unsigned int n_wrong = dealii::Utilities::MPI::sum(
       static_cast<unsigned int>(std::count(wrong.begin(), wrong.end(), true)),
       MPI_COMM_WORLD);
-    EXPECT_LE(n_wrong, body.states->bonds().rows.n_uncorrected) << dim;
-    EXPECT_LT(body.states->bonds().rows.n_uncorrected,
+    EXPECT_LE(n_wrong, body.states->bonds().corrections.n_left) << dim;
+    EXPECT_LT(body.states->bonds().corrections.n_left,
               (dim == 3 ? 0.5 : 0.1) * body.nodes->n_global());
   }
 } // namespace
@@ -181,13 +181,13 @@ TEST(SurfaceCorrection, corners_are_left)
 {
   const Settings moments{{"Peridynamics/Surface correction", "moments"}};
   const Body<1>  bar(box<1>() + moments, ModelKind::peridynamics);
-  EXPECT_EQ(bar.states->bonds().rows.n_uncorrected, 0u);
+  EXPECT_EQ(bar.states->bonds().corrections.n_left, 0u);
   for (const std::string cells : {"20, 20", "30, 30"})
     {
       const Body<2> square(
         box<2>() + Settings{{"Domain/Upper corner", "1, 1"}, {"Domain/Cells", cells}} + moments,
         ModelKind::peridynamics);
-      EXPECT_EQ(square.states->bonds().rows.n_uncorrected, 4u);
+      EXPECT_EQ(square.states->bonds().corrections.n_left, 4u);
     }
 }
 

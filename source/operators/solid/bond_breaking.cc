@@ -27,11 +27,11 @@ namespace PeriDeal
     , changes(breaks || bonds.families.cracks().history().changes_ever())
   {
     if (changes)
-      state.resize(bonds.rows.n_stored());
+      bonds.rows.body.state.resize(bonds.rows.body.size());
     if (!breaks)
       return;
     find_critical_stretches();
-    if (bonds.rows.has_lattice())
+    if (bonds.sums.has_lattice())
       screen = std::make_unique<StretchScreen<dim>>(bonds.families, critical.least_at_nodes());
     if (bonds.kinematics.is_full())
       watch_limits();
@@ -84,32 +84,31 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::pair<double, double> BondBreaking<dim>::stretch_and_limit(
-    const double                        *u,
-    const unsigned int                   i,
-    const typename SolidRows<dim>::Bond &bond) const
+  std::pair<double, double> BondBreaking<dim>::stretch_and_limit(const double         *u,
+                                                                 const unsigned int    i,
+                                                                 const SolidBond<dim> &bond) const
   {
     // W x e and W x^2; the same digits at both ends of a bond.
     const BondKinematics<dim> &kinematics = bonds.kinematics;
-    const Tensor<1, dim>       xi  = bonds.families.neighbors().bond_vector(i, bond.neighbor);
+    const Tensor<1, dim>       xi         = bonds.ends.vector(i, bond.neighbor);
     const double               all = kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
                                                             bond.moment * xi;
-    return {kinematics.extension_moment(u, i, bond), all * critical.of_bond(i, bond.neighbor)};
+    return {kinematics.extension_moment(u, i, bond),
+            all * critical.of_bond(i, bonds.ends.origin(bond.neighbor))};
   }
 
 
   template <int dim>
   void BondBreaking<dim>::find_inside(const double *u)
   {
-    SolidRows<dim> &rows = bonds.rows;
-    inside.clear();
+    BondTable<dim> &rows = bonds.rows;
     losing.clear();
     const auto look_at_row = [&](const unsigned int i) {
       rows.for_each_stored(i, [&](const auto &bond) {
-        if (!state.is_whole(bond.number))
+        if (!rows.is_whole(bond.number))
           return;
         if (const auto [found, limit] = stretch_and_limit(u, i, bond); found > limit)
-          inside.emplace_back(bond.number, found / limit);
+          overstretched.emplace_back(bond.number, found / limit);
       });
     };
     const unsigned char *const exceeds = bonds.kinematics.exceeding(u);
@@ -123,14 +122,14 @@ namespace PeriDeal
           {
             bool any = false;
             if (screen->may_reach(i, u, least_strain))
-              rows.for_each(i, [&](const auto &bond) {
+              rows.for_each_in_body(i, [&](const auto &bond) {
                 const auto [found, limit] = stretch_and_limit(u, i, bond);
                 any                       = any || found > limit;
               });
             if (!any)
               continue;
             rows.store_row(i);
-            state.resize(rows.n_stored());
+            rows.body.state.resize(rows.body.size());
           }
         if (rows.may_exceed(i, u, screen->least_critical() + least_strain))
           look_at_row(i);
@@ -139,25 +138,40 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BondBreaking<dim>::find_beyond(const double *u)
+  {
+    if (!bonds.ends.images || !bonds.ends.images->any_mirrored_alone())
+      return;
+    bonds.ends.find(u);
+    for (const unsigned int i : bonds.rows.beyond.nodes)
+      bonds.rows.for_each_beyond(i, [&](const auto &bond) {
+        if (!bonds.ends.may_break(bond.neighbor))
+          return;
+        if (const auto [found, limit] = stretch_and_limit(u, i, bond); found > limit)
+          overstretched.emplace_back(bond.number, found / limit);
+      });
+  }
+
+
+  template <int dim>
   void BondBreaking<dim>::find_overstretched(const Vector &u, const double share)
   {
+    overstretched.clear();
     u.update_ghost_values();
     find_inside(u.begin());
-    beyond = bonds.beyond ? bonds.beyond->find_overstretched(u.begin(), critical) : Overstretched();
+    find_beyond(u.begin());
     u.set_ghost_state(false);
     if (share <= 0.)
       return;
     double most = 0.;
-    for (const Overstretched *list : {&inside, &beyond})
-      for (const auto &[number, ratio] : *list)
-        most = std::max(most, ratio);
+    for (const auto &[number, ratio] : overstretched)
+      most = std::max(most, ratio);
     const double at_least =
       share * Utilities::MPI::max(most, bonds.families.nodes().communicator());
-    for (Overstretched *list : {&inside, &beyond})
-      list->erase(std::remove_if(list->begin(),
-                                 list->end(),
-                                 [&](const auto &bond) { return bond.second < at_least; }),
-                  list->end());
+    overstretched.erase(std::remove_if(overstretched.begin(),
+                                       overstretched.end(),
+                                       [&](const auto &bond) { return bond.second < at_least; }),
+                        overstretched.end());
   }
 
 
@@ -169,16 +183,14 @@ namespace PeriDeal
     Assert(!screen, ExcMessage("All bonds are to be stored."));
     double most = 0.;
     u.update_ghost_values();
+    bonds.ends.find(u.begin());
     for (unsigned int i = 0; i < bonds.families.nodes().n_owned(); ++i)
-      bonds.rows.for_each_stored(i, [&](const auto &bond) {
-        if (!state.is_whole(bond.number))
+      bonds.rows.for_each(i, [&](const auto &bond) {
+        if (!bonds.rows.is_whole(bond.number) || !bonds.ends.may_break(bond.neighbor))
           return;
         if (const auto [found, limit] = stretch_and_limit(u.begin(), i, bond); found > most * limit)
           most = found / limit;
       });
-    if (bonds.beyond)
-      for (const auto &[number, ratio] : bonds.beyond->find_overstretched(u.begin(), critical))
-        most = std::max(most, ratio);
     u.set_ghost_state(false);
     return Utilities::MPI::max(most, bonds.families.nodes().communicator());
   }
@@ -204,16 +216,11 @@ namespace PeriDeal
           broken.emplace_back(ratio,
                               nodes.position(i) + 0.5 * (nodes.position(j) - nodes.position(i)));
       };
-    auto next = inside.begin(); // in the order of their nodes
-    for (unsigned int i = 0; i < nodes.n_owned() && next != inside.end(); ++i)
-      bonds.rows.for_each_stored(i, [&](const auto &bond) {
-        if (next != inside.end() && next->first == bond.number)
-          add(i, bond.neighbor, 1., (next++)->second);
-      });
-    if (bonds.beyond)
-      bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double ratio) {
-        add(bond.node, bond.node, bonds.beyond->n_ends(bond), ratio);
-      });
+    for (const auto &[number, ratio] : overstretched)
+      {
+        const unsigned int i = bonds.rows.node_of(number), j = bonds.rows.neighbor(number);
+        add(i, bonds.ends.is_fictitious(j) ? i : j, bonds.ends.n_ends(i, j), ratio);
+      }
     const MPI_Comm communicator = nodes.communicator();
     Utilities::MPI::sum(n_ends, communicator, all);
     places.elsewhere = all.back() > 0.;
@@ -246,42 +253,54 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::find_losing()
   {
-    for (const auto &[number, ratio] : inside)
+    for (const auto &[number, ratio] : overstretched)
       losing.push_back(bonds.rows.node_of(number));
-    if (bonds.beyond)
-      bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double) {
-        losing.push_back(bond.node);
-      });
     std::sort(losing.begin(), losing.end());
     losing.erase(std::unique(losing.begin(), losing.end()), losing.end());
+  }
+
+
+  /** Those bonds to fictitious nodes that others of a node, broken by now, would have to hold. */
+  template <int dim>
+  void BondBreaking<dim>::break_dependent(const unsigned int node, const double t)
+  {
+    std::vector<unsigned int> lost, lost_images;
+    bonds.rows.for_each(node, [&](const auto &bond) {
+      if (!bonds.rows.is_whole(bond.number) && bonds.ends.may_break(bond.neighbor))
+        (bonds.ends.is_fictitious(bond.neighbor) ? lost_images : lost).push_back(bond.neighbor);
+    });
+    bonds.rows.for_each_beyond(node, [&](const auto &bond) {
+      if (!bonds.rows.is_whole(bond.number))
+        return;
+      const FictitiousImages<dim> &images = *bonds.ends.images;
+      const unsigned int           image  = bonds.ends.image(bond.neighbor);
+      bool                         any    = false;
+      images.for_each_term(image, [&](const auto &term) {
+        // Images of other nodes that are gone: what is continued from them is, too.
+        any = any ||
+              (term.mirrored == 0 ?
+                 std::find(lost.begin(), lost.end(), term.node) != lost.end() :
+                 std::any_of(lost_images.begin(), lost_images.end(), [&](const unsigned int j) {
+                   return images.are_images_of_one(bonds.ends.image(j), image, term);
+                 }));
+      });
+      if (any)
+        bonds.rows.mark(bond.number, BondState::dependent, t);
+    });
   }
 
 
   template <int dim>
   unsigned long long BondBreaking<dim>::break_overstretched(const double t)
   {
-    for (const auto &[number, ratio] : inside)
+    unsigned long long n_ends = 0;
+    for (const auto &[number, ratio] : overstretched)
       {
-        state.mark(number, BondState::broken, t);
-        bonds.kinematics.release(number);
+        n_ends += bonds.ends.n_ends(bonds.rows.node_of(number), bonds.rows.neighbor(number));
+        bonds.rows.mark(number, BondState::broken, t);
       }
-    unsigned long long n_ends = inside.size();
-    if (bonds.beyond)
-      {
-        bonds.beyond->for_each_in(beyond, [&](const auto &bond, const double) {
-          n_ends += bonds.beyond->n_ends(bond);
-          bonds.beyond->break_bond(bond.number, BondState::broken, t);
-        });
-        for (const unsigned int i : losing)
-          {
-            std::vector<unsigned int> lost;
-            bonds.rows.for_each_stored(i, [&](const auto &bond) {
-              if (!state.is_whole(bond.number))
-                lost.push_back(bond.neighbor);
-            });
-            bonds.beyond->break_dependent(i, lost, t);
-          }
-      }
+    for (const unsigned int i : losing)
+      break_dependent(i, t);
     return n_ends;
   }
 
@@ -297,7 +316,7 @@ namespace PeriDeal
       return {};
     find_overstretched(u, share);
     const MPI_Comm           all     = bonds.families.nodes().communicator();
-    const unsigned long long n_found = inside.size() + beyond.size();
+    const unsigned long long n_found = overstretched.size();
     if (Utilities::MPI::sum(n_found, all) == 0)
       return {};
     keep_places();
@@ -317,12 +336,13 @@ namespace PeriDeal
   std::vector<NodePair> BondBreaking<dim>::broken_since(std::size_t &n_known) const
   {
     const auto           &layout = *bonds.families.nodes().partitioner();
+    const BondRows<dim>  &rows   = bonds.rows.body;
     std::vector<NodePair> pairs;
-    for (const auto &[number, time] : state.marked_since(n_known))
+    for (const auto &[number, time] : rows.state.marked_since(n_known))
       {
-        const NodePair pair{layout.local_to_global(bonds.rows.node_of(number)),
-                            layout.local_to_global(bonds.rows.neighbor(number))};
-        if (state.is_broken(number) && pair[0] < pair[1])
+        const NodePair pair{layout.local_to_global(rows.node_of(number)),
+                            layout.local_to_global(rows.neighbors[number])};
+        if (rows.state.is_broken(number) && pair[0] < pair[1])
           pairs.push_back(pair);
       }
     return pairs;
@@ -330,36 +350,26 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondBreaking<dim>::exchange(Archive                     &archive,
-                                   const NodeKeys              &keys,
-                                   Count                       &n_first,
-                                   const std::function<void()> &at_first)
+  void BondBreaking<dim>::exchange(Archive                        &archive,
+                                   const NodeKeys                 &keys,
+                                   typename BondTable<dim>::Count &n_first,
+                                   const std::function<void()>    &at_first)
   {
     if (!changes)
       return;
     if (breaks)
       so_far.exchange(archive);
-    using List = std::vector<BondState::Kept>;
-    const List of_body =
-      state.exchange(archive, bonds.rows.numbering(archive.loads()), keys, n_first[0]);
-    const List of_outside = bonds.beyond ? bonds.beyond->exchange(archive, keys, n_first[1]) :
-                                           List();
+    const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
     if (!archive.loads())
       return;
     const auto take = [&](const bool first) {
-      for (const BondState::Kept &kept : of_body)
+      for (const BondState::Kept &kept : list)
         if (kept.is_first == first)
-          {
-            state.mark(kept.number, kept.mark, kept.time);
-            bonds.kinematics.release(kept.number);
-          }
-      for (const BondState::Kept &kept : of_outside)
-        if (kept.is_first == first)
-          bonds.beyond->break_bond(kept.number, kept.mark, kept.time);
+          bonds.rows.mark(kept.number, kept.mark, kept.time);
     };
     take(true);
     n_first                         = n_marks();
-    const unsigned long long n_kept = of_body.size() + of_outside.size();
+    const unsigned long long n_kept = list.size();
     if (Utilities::MPI::sum(n_kept - n_first[0] - n_first[1],
                             bonds.families.nodes().communicator()) > 0)
       at_first();
@@ -374,17 +384,19 @@ namespace PeriDeal
     std::vector<typename Families<dim>::Member> family;
     std::vector<std::pair<unsigned int, int>>   crossed;
     std::vector<double>                         result(nodes.n_owned());
-    for (const unsigned int i : bonds.rows.nodes_with_rows()) // others have no bond cut
+    const BondRows<dim>                        &rows = bonds.rows.body;
+    for (std::size_t row = 0; row < rows.nodes.size(); ++row) // others have no bond cut
       {
         // Bonds are stored in the order of the family, those left out that cracks cut at first.
+        const unsigned int i = rows.nodes[row];
         bonds.families.members_of(i, family);
         double      all = 0., left = 0.;
-        std::size_t k = bonds.rows.begin_of(i);
+        std::size_t k = rows.starts[row];
         for (const auto &bond : family)
           {
             const double volume = nodes.volume(bond.neighbor);
-            const bool   stored = k < bonds.rows.end_of(i) &&
-                                bonds.rows.neighbor(k) == bond.neighbor && bond.weight != 0.;
+            const bool   stored = k < rows.starts[row + 1] && rows.neighbors[k] == bond.neighbor &&
+                                bond.weight != 0.;
             if (!stored)
               {
                 bonds.families.cracks().crossed_cracks(i, bond.neighbor, crossed);
@@ -393,16 +405,15 @@ namespace PeriDeal
                 continue;
               }
             all += volume;
-            left += state.is_whole(k) ? bond.kept * volume : 0.;
+            left += rows.state.is_whole(k) ? bond.kept * volume : 0.;
             ++k;
           }
-        if (bonds.beyond)
-          bonds.beyond->for_each_of(i, [&](const auto &bond) {
-            if (!bonds.beyond->may_break(bond))
-              return;
-            all += bonds.beyond->images()[bond.image].volume;
-            left += bond.whole ? bonds.beyond->images()[bond.image].volume : 0.;
-          });
+        bonds.rows.for_each_beyond(i, [&](const auto &bond) {
+          if (!bonds.ends.may_break(bond.neighbor))
+            return;
+          all += bonds.ends.volume(bond.neighbor);
+          left += bonds.rows.is_whole(bond.number) ? bonds.ends.volume(bond.neighbor) : 0.;
+        });
         result[i] = all > 0. ? 1. - left / all : 0.;
       }
     return result;

@@ -13,31 +13,84 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** The thermal strain of a bond to a fictitious node. */
+    template <int dim>
+    double strain_beyond(const Nodes<dim>     &nodes,
+                         const BondEnds<dim>  &ends,
+                         const ThermalStrains &thermal,
+                         const unsigned int    i,
+                         const unsigned int    j)
+    {
+      // What a temperature linear in space does to a free body is no linear displacement. The bond
+      // has no force then if its extension is that of what the image follows from, at r_k from the
+      // node: e = sum f_k (s_k M.r_k - r_k^2/2 ds/dM), the mean of both ends for a mirror image.
+      const Point<dim>     at  = nodes.position(i);
+      const Tensor<1, dim> xi  = ends.vector(i, j);
+      double               own = thermal[i], other = 0., mean = 0., half = 0., rest = 1.;
+      ends.images->for_each_term(ends.image(j), [&](const auto &term) {
+        Tensor<1, dim> r = nodes.position(term.node) - at;
+        for (unsigned int d = 0; d < dim; ++d)
+          r[d] = (term.mirrored >> d) & 1 ? xi[d] : r[d];
+        const double f = term.factor / xi.norm_square(), s = thermal[term.node];
+        other += term.factor * s;
+        mean += f * s * (r * xi);
+        half += 0.5 * f * r.norm_square();
+        rest -= f * (r * xi);
+      });
+      // A body narrower than a family mirrors and continues along one axis: no such sum.
+      mean -= half * (other - own);
+      return std::abs(rest) > 1e-6 ? 0.5 * (own + other) : mean;
+    }
+  } // namespace
+
+
   template <int dim>
   BondKinematics<dim>::BondKinematics(const Families<dim>  &families,
-                                      SolidRows<dim>       &rows,
+                                      const BondEnds<dim>  &ends,
+                                      BondTable<dim>       &bonds,
                                       const ThermalStrains &thermal,
                                       const bool            full)
     : families(families)
-    , rows(rows)
+    , ends(ends)
+    , bonds(bonds)
     , thermal(thermal)
     , full(full)
   {}
 
 
   template <int dim>
-  void BondKinematics<dim>::keep_lengths()
+  void BondKinematics<dim>::take_positions()
   {
     if (!full)
       return;
-    across.resize(rows.n_stored(), 0.);
-    lengths.reserve(rows.n_stored());
-    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-      rows.for_each_stored(i, [&](const Bond &bond) { lengths.push_back(bond.moment.norm()); });
     nodes.resize(families.nodes().n_local());
     for (unsigned int i = 0; i < nodes.size(); ++i)
       for (unsigned int d = 0; d < dim; ++d)
         nodes[i].numbers[d] = families.nodes().position(i)[d];
+  }
+
+
+  template <int dim>
+  void BondKinematics<dim>::take_thermal_strains()
+  {
+    seen = false;
+    strains_beyond.resize(thermal.any() ? bonds.beyond.size() : 0);
+    if (thermal.any())
+      visit_beyond([&](const unsigned int i, const Bond &bond) {
+        strains_beyond[bonds.place(bond.number)] =
+          strain_beyond(families.nodes(), ends, thermal, i, bond.neighbor);
+      });
+  }
+
+
+  template <int dim>
+  double BondKinematics<dim>::thermal_strain(const unsigned int i, const Bond &bond) const
+  {
+    if (!ends.is_fictitious(bond.neighbor))
+      return thermal.of_bond(i, bond.neighbor);
+    return strains_beyond.empty() ? 0. : strains_beyond[bonds.place(bond.number)];
   }
 
 
@@ -62,10 +115,13 @@ namespace PeriDeal
   DeformedRows BondKinematics<dim>::all_rows() const
   {
     DeformedRows all;
-    rows.show(all);
-    all.nodes    = nodes.data();
-    all.lengths  = lengths.data();
-    all.strained = thermal.any();
+    all.starts    = bonds.body.starts.data();
+    all.end       = bonds.body.nodes.size();
+    all.neighbors = bonds.body.neighbors.data();
+    all.springs   = bonds.body.springs.data();
+    all.nodes     = nodes.data();
+    all.lengths   = bonds.body.lengths.data();
+    all.strained  = thermal.any();
     return all;
   }
 
@@ -94,33 +150,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  Tensor<1, dim> BondKinematics<dim>::deformed_bond(const double      *u,
-                                                    const unsigned int i,
-                                                    const unsigned int j) const
-  {
-    Tensor<1, dim> bond = families.neighbors().bond_vector(i, j);
-    for (unsigned int d = 0; d < dim; ++d)
-      bond[d] += u[dim * j + d] - u[dim * i + d];
-    return bond;
-  }
-
-
-  template <int dim>
   double BondKinematics<dim>::strained_extension_moment(const double      *u,
                                                         const unsigned int i,
                                                         const Bond        &bond) const
   {
-    const unsigned int   j      = bond.neighbor;
-    const Tensor<1, dim> xi     = families.neighbors().bond_vector(i, j);
-    const double         strain = thermal.of_bond(i, j);
-    Tensor<1, dim>       eta;
-    for (unsigned int d = 0; d < dim; ++d)
-      eta[d] = u[dim * j + d] - u[dim * i + d];
+    const Tensor<1, dim> xi     = ends.vector(i, bond.neighbor);
+    const Tensor<1, dim> eta    = ends.change(u, i, bond.neighbor);
+    const double         strain = thermal_strain(i, bond);
     if (!full)
       return bond.moment * eta - strain * (bond.moment * xi);
     // |Y| - |xi| without the difference of two nearly equal numbers
     const double x = xi.norm();
-    return lengths[bond.number] * ((2. * xi + eta) * eta / ((xi + eta).norm() + x) - strain * x);
+    return length(bond) * ((2. * xi + eta) * eta / ((xi + eta).norm() + x) - strain * x);
   }
 
 
@@ -129,32 +170,75 @@ namespace PeriDeal
                                           const double        *u,
                                           const NodeLaws<dim> &laws) const
   {
-    if (full)
+    ends.find(u);
+    const auto product_at = [&](const unsigned int i) {
+      return [this, u, i](const Bond &bond) { return extension_moment(u, i, bond); };
+    };
+    if (!full)
       {
-        take(u, nullptr);
-        sum_extensions<dim>(all_rows(), tau, nullptr);
         for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-          tau[i] = laws.tension(i, tau[i]);
+          tau[i] = laws.tension(i, sum_over_bonds(bonds, i, product_at(i)));
         return;
       }
+    take(u, nullptr);
+    sum_extensions<dim>(all_rows(), tau, nullptr);
+    visit_beyond(
+      [&](const unsigned int i, const Bond &bond) { tau[i] += extension_moment(u, i, bond); });
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-      {
-        double sum = 0.;
-        rows.for_each(i, [&](const Bond &bond) { sum += extension_moment(u, i, bond); });
-        tau[i] = laws.tension(i, sum);
-      }
+      tau[i] = laws.tension(i, tau[i]);
+  }
+
+
+  template <int dim>
+  void BondKinematics<dim>::subtract(Vector               &y,
+                                     const unsigned int    i,
+                                     const unsigned int    j,
+                                     const Tensor<1, dim> &force) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      y.local_element(dim * i + d) -= force[d];
+    if (ends.is_fictitious(j))
+      ends.images->pull(ends.image(j), force);
   }
 
 
   template <int dim>
   void BondKinematics<dim>::find_forces(Vector &y, const double *u, const Vector &tau) const
   {
-    take(u, &tau);
-    sum_forces<dim>(all_rows(),
-                    limits.empty() ? nullptr : limits.data(),
-                    y.begin(),
-                    exceeds.data());
-    seen = !limits.empty();
+    const auto add = [&](const unsigned int i, const Bond &bond) {
+      const unsigned int j = bond.neighbor;
+      const double       of_both =
+        tau.local_element(i) + (ends.is_fictitious(j) ? 0. : tau.local_element(j));
+      const double size =
+        LinearPeridynamicSolid::force(bond.spring, extension_moment(u, i, bond), of_both);
+      Tensor<1, dim> along = bond.moment;
+      if (full)
+        {
+          along = ends.vector(i, j) + ends.change(u, i, j);
+          along *= length(bond) / along.norm();
+        }
+      subtract(y, i, j, size * along);
+    };
+    if (ends.images)
+      ends.images->begin_forces();
+    if (full)
+      {
+        take(u, &tau);
+        sum_forces<dim>(all_rows(),
+                        limits.empty() ? nullptr : limits.data(),
+                        y.begin(),
+                        exceeds.data());
+        seen = !limits.empty();
+      }
+    else
+      {
+        y = 0.;
+        for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+          bonds.for_each_in_body(i, [&](const Bond &bond) { add(i, bond); });
+      }
+    visit_beyond(add);
+    if (ends.images)
+      ends.images->pass_on(y);
   }
 
 
@@ -178,22 +262,25 @@ namespace PeriDeal
   template <int dim>
   double BondKinematics<dim>::energy_of_extensions(const double *u) const
   {
-    double            sum = 0.;
-    const Nodes<dim> &own = families.nodes();
+    double     sum      = 0.;
+    const auto add_bond = [&](const unsigned int i, const Bond &bond) {
+      sum += (ends.is_fictitious(bond.neighbor) ? 1. : 0.5) *
+             LinearPeridynamicSolid::bond_energy(bond.spring, extension_moment(u, i, bond));
+    };
+    ends.find(u);
+    visit_beyond(add_bond);
+    const unsigned int n_owned = families.nodes().n_owned();
     if (full)
       {
-        std::vector<double> sums(own.n_owned()), squares(own.n_owned());
+        std::vector<double> sums(n_owned), squares(n_owned);
         take(u, nullptr);
         sum_extensions<dim>(all_rows(), sums.data(), squares.data());
         for (const double square : squares)
           sum += 0.25 * square;
         return sum;
       }
-    for (unsigned int i = 0; i < own.n_owned(); ++i)
-      rows.for_each(i, [&](const Bond &bond) {
-        const double product = extension_moment(u, i, bond);
-        sum += 0.25 * bond.spring * product * product;
-      });
+    for (unsigned int i = 0; i < n_owned; ++i)
+      bonds.for_each_in_body(i, [&](const Bond &bond) { add_bond(i, bond); });
     return sum;
   }
 
@@ -201,35 +288,40 @@ namespace PeriDeal
   template <int dim>
   void BondKinematics<dim>::linearize(const double *u, const Vector &tau)
   {
-    const double *const t = tau.begin();
+    ends.find(u);
+    const auto renew = [&](BondRows<dim> &rows, const unsigned int i, const Bond &bond) {
+      const unsigned int   j     = bond.neighbor;
+      const std::size_t    k     = bonds.place(bond.number);
+      const Tensor<1, dim> along = ends.vector(i, j) + ends.change(u, i, j);
+      const double         of_both =
+        tau.local_element(i) + (ends.is_fictitious(j) ? 0. : tau.local_element(j));
+      const double size =
+        LinearPeridynamicSolid::force(bond.spring, extension_moment(u, i, bond), of_both);
+      rows.moments[k] = length(bond) / along.norm() * along;
+      rows.across[k]  = size * length(bond) / along.norm();
+    };
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-      rows.for_each_stored(i, [&](const Bond &bond) {
-        const Tensor<1, dim> along = deformed_bond(u, i, bond.neighbor);
-        const double size = bond.spring * extension_moment(u, i, bond) + t[i] + t[bond.neighbor];
-        rows.set_moment(bond.number, length(bond) / along.norm() * along);
-        across[bond.number] = size * length(bond) / along.norm();
-      });
+      bonds.for_each_stored(i, [&](const Bond &bond) { renew(bonds.body, i, bond); });
+    visit_beyond([&](const unsigned int i, const Bond &bond) { renew(bonds.beyond, i, bond); });
   }
 
 
   template <int dim>
-  void BondKinematics<dim>::add_geometric_forces(Vector          &y,
-                                                 const double    *x,
-                                                 const BondState &state) const
+  void BondKinematics<dim>::add_geometric_forces(Vector &y, const double *x) const
   {
+    if (ends.images)
+      ends.images->begin_forces();
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-      rows.for_each_stored(i, [&](const Bond &bond) {
-        if (!state.is_whole(bond.number))
+      bonds.for_each(i, [&](const Bond &bond) {
+        if (!bonds.is_whole(bond.number))
           return;
-        const double *const   v = x + dim * bond.neighbor;
-        const Tensor<1, dim> &p = bond.moment;
-        Tensor<1, dim>        change;
-        for (unsigned int d = 0; d < dim; ++d)
-          change[d] = v[d] - x[dim * i + d];
+        Tensor<1, dim>        change = ends.change(x, i, bond.neighbor);
+        const Tensor<1, dim> &p      = bond.moment;
         change -= (p * change) / (length(bond) * length(bond)) * p;
-        for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * i + d) -= stiffness_across(bond) * change[d];
+        subtract(y, i, bond.neighbor, stiffness_across(bond) * change);
       });
+    if (ends.images)
+      ends.images->pass_on(y);
   }
 
 
@@ -243,18 +335,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondKinematics<dim>::release(const std::size_t number)
-  {
-    rows.release(number);
-    if (full)
-      lengths[number] = across[number] = 0.;
-  }
-
-
-  template <int dim>
   std::size_t BondKinematics<dim>::memory_consumption() const
   {
-    return (lengths.capacity() + across.capacity() + limits.capacity()) * sizeof(double) +
+    return (strains_beyond.capacity() + limits.capacity()) * sizeof(double) +
            nodes.capacity() * sizeof(nodes[0]) + exceeds.capacity();
   }
 

@@ -7,6 +7,17 @@
 
 namespace PeriDeal
 {
+  /** a . (far - own), of displacements of two nodes. */
+  template <int dim>
+  inline double change_along(const dealii::Tensor<1, dim> &a, const double *own, const double *far)
+  {
+    double sum = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      sum += a[d] * (far[d] - own[d]);
+    return sum;
+  }
+
+
   /** a . (u_j - u_i), of displacements whose components are interleaved. */
   template <int dim>
   inline double change_along(const dealii::Tensor<1, dim> &a,
@@ -14,9 +25,6 @@ namespace PeriDeal
                              const unsigned int            i,
                              const unsigned int            j)
   {
-    double sum = 0.;
-    for (unsigned int d = 0; d < dim; ++d)
-      sum += a[d] * (u[dim * j + d] - u[dim * i + d]);
-    return sum;
+    return change_along(a, u + dim * i, u + dim * j);
   }
 } // namespace PeriDeal

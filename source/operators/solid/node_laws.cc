@@ -3,20 +3,47 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/place_text.h>
+#include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/operators/solid/node_laws.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <sstream>
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /**
+     * What a node that bonds do not hold needs: a longer horizon, if this one spans few cells of
+     * its size, else other cracks.
+     */
+    std::string advice_on_horizon(const double horizon, const double volume, const unsigned int dim)
+    {
+      constexpr double few = 2.5, enough = 3.; // cells in a horizon
+      const double     size = std::pow(volume, 1. / dim);
+      if (horizon >= few * size)
+        return "Check the cracks in section 'Cracks': they leave it too few bonds.";
+      std::ostringstream text;
+      text.precision(3);
+      text << "Cells there are as large as " << size
+           << ", and 'Horizon' in section 'Peridynamics' is " << horizon << ": take "
+           << enough * size << " or more, or smaller cells there.";
+      return text.str();
+    }
+  } // namespace
+
 
   template <int dim>
   NodeLaws<dim>::NodeLaws(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : weighted(nodes.partitioner())
     , volumetric(!body.elasticity.is_bond_based() && dim > 1)
     , nodes(nodes)
+    , horizon(body.horizon())
   {
     const PlaneState plane   = body.elasticity.plane;
     double           largest = 0., smallest = 1e300;
@@ -38,6 +65,35 @@ namespace PeriDeal
     const MPI_Comm all = nodes.communicator();
     several_phases     = Utilities::MPI::max(largest, all) >
                      (1. + 1e-12) * Utilities::MPI::min(smallest, all);
+  }
+
+
+  template <int dim>
+  double NodeLaws<dim>::weight_of(const Families<dim>                               &families,
+                                  const unsigned int                                 i,
+                                  const std::vector<typename Families<dim>::Member> &family,
+                                  std::string                                       &message) const
+  {
+    SymmetricTensor<2, dim> shape;
+    double                  q = 0.;
+    for (const auto &bond : family)
+      if (const double weight = bond.kept * bond.weight; weight != 0.)
+        {
+          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+          q += weight * xi.norm_square() / nodes.volume(i);
+          shape += weight * symmetrize(outer_product(xi, xi));
+        }
+    if (!message.empty())
+      return q;
+    if (!(q > 0.))
+      message =
+        "The node at " + place_text(nodes.position(i)) + " is isolated: no bond of it is left. ";
+    else if (smallest_eigenvalue(shape) < 1e-9 * trace(shape))
+      message = "All bonds of the node at " + place_text(nodes.position(i)) +
+                " lie in one line or plane, across which nothing holds it. ";
+    if (!message.empty())
+      message += advice_on_horizon(horizon, nodes.volume(i), dim);
+    return q;
   }
 
 

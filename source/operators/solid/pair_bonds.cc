@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "change_along.h"
 #include "stretch_fault.h"
 
 namespace PeriDeal
@@ -74,86 +73,6 @@ namespace PeriDeal
     std::sort(owned.begin(), owned.end());
     owned.erase(std::unique(owned.begin(), owned.end()), owned.end());
     return owned;
-  }
-
-
-  template <int dim>
-  void PairBonds<dim>::add_forces_of(const std::vector<unsigned int> &of_nodes,
-                                     const double                     multiple,
-                                     Vector                          &y,
-                                     const Vector                    &u) const
-  {
-    const double *const all = u.begin();
-    for (const unsigned int i : of_nodes)
-      {
-        Tensor<1, dim> sum;
-        this->for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-          sum += bond.strength * change_along<dim>(xi, all, i, bond.neighbor) * xi;
-        });
-        for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * i + d) -= multiple * sum[d];
-      }
-  }
-
-
-  template <int dim>
-  Tensor<1, dim> PairBonds<dim>::diagonal_of(const unsigned int node) const
-  {
-    Tensor<1, dim> sum;
-    this->for_each(node, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-      for (unsigned int d = 0; d < dim; ++d)
-        sum[d] += bond.strength * xi[d] * xi[d];
-    });
-    return sum;
-  }
-
-
-  template <int dim>
-  void PairBonds<dim>::add_row_sums(std::vector<double> &sums) const
-  {
-    for (const unsigned int i : this->nodes())
-      this->for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-        double length = 0.;
-        for (unsigned int d = 0; d < dim; ++d)
-          length += std::abs(xi[d]);
-        for (unsigned int d = 0; d < dim; ++d)
-          sums[dim * i + d] += 2. * bond.strength * std::abs(xi[d]) * length;
-      });
-  }
-
-
-  template <int dim>
-  double PairBonds<dim>::energy(const Vector                    &u,
-                                const std::vector<unsigned int> &of_nodes,
-                                const std::vector<double>       &thermal) const
-  {
-    double sum = 0.;
-    for (const unsigned int i : of_nodes)
-      this->for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-        double change = change_along<dim>(xi, u.begin(), i, bond.neighbor);
-        if (!thermal.empty())
-          change -= 0.5 * (thermal[i] + thermal[bond.neighbor]) * xi.norm_square();
-        sum += 0.25 * bond.strength * change * change;
-      });
-    return sum;
-  }
-
-
-  template <int dim>
-  double PairBonds<dim>::add_thermal(Vector                          &loads,
-                                     const std::vector<unsigned int> &of_nodes,
-                                     const std::vector<double>       &thermal,
-                                     const double                     multiple) const
-  {
-    double held = 0.;
-    for (const unsigned int i : of_nodes)
-      this->for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-        const double mean = 0.5 * (thermal[i] + thermal[bond.neighbor]), square = xi.norm_square();
-        for (unsigned int d = 0; d < dim; ++d)
-          loads.local_element(dim * i + d) -= multiple * bond.strength * mean * square * xi[d];
-        held += 0.25 * multiple * bond.strength * std::pow(mean * square, 2);
-      });
-    return held;
   }
 
 

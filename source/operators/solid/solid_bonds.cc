@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
+#include <perideal/operators/solid/fictitious_cuts.h>
 #include <perideal/operators/solid/solid_bonds.h>
 #include <perideal/operators/solid/surface_factors.h>
 #include <perideal/scene/beyond_sides.h>
@@ -15,64 +17,54 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
+  /** Let families go on beyond the sides of the body. Collective. */
+  template <int dim>
+  void SolidBonds<dim>::complete_families(const BodyParameters<dim> &body)
   {
-    /**
-     * Families that go on beyond the sides of the body: adds to q. Collective.
-     * @param thinnest part of a mesh
-     */
-    template <int dim>
-    std::unique_ptr<FictitiousBonds<dim>> complete_families(const Families<dim>       &families,
-                                                            const SolidRows<dim>      &rows,
-                                                            const BodyParameters<dim> &body,
-                                                            Vector                    &weighted,
-                                                            double                    &thinnest)
-    {
-      if (completes_mesh(body))
-        {
-          const auto beyond_sides = [&](const auto &goes_on, ThinParts *thin) {
-            return boundary_images<dim>(families.nodes(),
-                                        body.boundary_conditions.symmetry,
-                                        goes_on,
-                                        families.weights().reach(),
-                                        thin);
-          };
-          ThinParts  thin{[&](const types::boundary_id side) { return is_free(body, side); },
-                         thin_on_mesh(body)};
-          const auto images =
-            beyond_sides([&](const types::boundary_id side) { return goes_on_beyond(body, side); },
-                         &thin);
-          thinnest          = thin.thinnest;
-          const bool ends   = completes_at_surfaces(body) || thin.any;
-          auto       beyond = std::make_unique<FictitiousBonds<dim>>(
-            families,
-            images,
-            ends ? beyond_sides([](const types::boundary_id) { return true; }, nullptr) :
-                         std::vector<BoundaryImage<dim>>());
-          beyond->add_weights(weighted);
-          return beyond;
-        }
-      const auto sides     = beyond_sides(body);
-      const bool completes = completes_at_surfaces(body);
-      if (!families.neighbors().has_unique_sites() ||
-          (!completes && std::all_of(sides.begin(), sides.end(), [](const auto side) {
-            return side == BeyondSide::nothing;
-          })))
-        return nullptr;
-      auto beyond = std::make_unique<FictitiousBonds<dim>>(
-        families,
-        sides,
-        completes,
-        !body.elasticity.has_full_kinematics() && !families.cracks().history().changes_ever());
-      beyond->add_weights(weighted);
-      // The lattice knows what is complete to the last bit.
-      const double complete = rows.complete_weighted();
-      for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-        if (std::abs(weighted.local_element(i) - complete) < 1e-12 * complete)
-          weighted.local_element(i) = complete;
-      return beyond;
-    }
-  } // namespace
+    const auto search = [&]() {
+      ends.images = std::make_unique<FictitiousImages<dim>>(families.nodes());
+      return FictitiousBondSearch<dim>(families, *ends.images);
+    };
+    if (completes_mesh(body))
+      {
+        const auto beyond_sides = [&](const auto &goes_on, ThinParts *thin) {
+          return boundary_images<dim>(families.nodes(),
+                                      body.boundary_conditions.symmetry,
+                                      goes_on,
+                                      families.weights().reach(),
+                                      thin);
+        };
+        ThinParts  thin{[&](const types::boundary_id side) { return is_free(body, side); },
+                       thin_on_mesh(body)};
+        const auto images =
+          beyond_sides([&](const types::boundary_id side) { return goes_on_beyond(body, side); },
+                       &thin);
+        thinnest       = thin.thinnest;
+        const bool all = completes_at_surfaces(body) || thin.any;
+        rows.go_on_beyond(
+          search().on_mesh(images,
+                           all ?
+                             beyond_sides([](const types::boundary_id) { return true; }, nullptr) :
+                             std::vector<BoundaryImage<dim>>()),
+          false);
+        return;
+      }
+    const auto sides     = beyond_sides(body);
+    const bool completes = completes_at_surfaces(body);
+    if (!families.neighbors().has_unique_sites() ||
+        (!completes && std::all_of(sides.begin(), sides.end(), [](const auto side) {
+          return side == BeyondSide::nothing;
+        })))
+      return;
+    rows.go_on_beyond(search().on_lattice(sides, completes),
+                      !body.elasticity.has_full_kinematics() &&
+                        !families.cracks().history().changes_ever());
+    // The lattice knows what is complete to the last bit.
+    const double complete = rows.complete_weighted;
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      if (double &q = laws.weighted.local_element(i); std::abs(q - complete) < 1e-12 * complete)
+        q = complete;
+  }
 
 
   template <int dim>
@@ -105,58 +97,147 @@ namespace PeriDeal
   SolidBonds<dim>::SolidBonds(Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : families(nodes.find_parts(body.boundary_conditions), body)
     , laws(families.nodes(), body)
-    , rows(families, laws, body)
-    , kinematics(families, rows, thermal, body.elasticity.has_full_kinematics())
-    , beyond(complete_families(families, rows, body, laws.weighted, thinnest))
+    , ends(families)
+    , rows(families, laws, ends, body)
+    , sums(families, ends, rows, laws)
+    , kinematics(families, ends, rows, thermal, body.elasticity.has_full_kinematics())
     , weights_follow(body.elasticity.micromodulus != Micromodulus::constant)
   {
+    complete_families(body);
     if (!weights_follow)
-      laws.weighted = rows.complete_weighted();
+      laws.weighted = rows.complete_weighted;
     laws.weighted.update_ghost_values();
-    rows.find_springs(body);
-    kinematics.keep_lengths();
-    if (beyond)
-      beyond->find_springs(laws, kinematics.is_full());
+    if (body.peridynamics.corrects_elastic_bonds())
+      correct_surface(body);
+    rows.find_springs(body.elasticity.has_full_kinematics());
+    sums.take_lattice();
+    kinematics.take_positions();
   }
 
 
   template <int dim>
-  void SolidBonds<dim>::part(const unsigned int i, const double t, BondState &state)
+  void SolidBonds<dim>::correct_surface(const BodyParameters<dim> &body)
+  {
+    BondRows<dim>       &stored = rows.body; // springs still are W x^2
+    const SurfaceFactors factors =
+      surface_factors(families,
+                      body.peridynamics,
+                      {stored.starts, stored.neighbors, stored.springs});
+    std::string message;
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      if (message.empty() && laws.volumetric &&
+          laws[i].extension + laws[i].volumetric * laws[i].dilatation * factors.ratio[i] <= 0.)
+        message =
+          "'Surface correction' in section 'Peridynamics': with this Poisson ratio the energy of the node at " +
+          place_text(families.nodes().position(i)) +
+          " would not be positive. Use 'moments' or 'none'.";
+    throw_on_all_if_any(families.nodes().communicator(), message);
+    for (std::size_t k = 0; k < stored.size(); ++k)
+      {
+        stored.moments[k] *= factors.dilatation[k];
+        stored.springs[k] *= factors.dilatation[k] * factors.dilatation[k] / factors.extension[k];
+      }
+    laws.weighted = factors.q;
+    corrections   = {factors.n_left, factors.gap};
+    laws.weighted.update_ghost_values();
+  }
+
+
+  template <int dim>
+  void SolidBonds<dim>::part(const unsigned int i, const double t)
   {
     rows.for_each_stored(i, [&](const auto &bond) {
-      if (!state.is_whole(bond.number) || !families.cracks().cuts(i, bond.neighbor))
-        return;
-      state.mark(bond.number, BondState::parted, t);
-      kinematics.release(bond.number);
+      if (rows.is_whole(bond.number) && families.cracks().cuts(i, bond.neighbor))
+        rows.mark(bond.number, BondState::parted, t);
     });
-    if (beyond)
-      beyond->part(i, t);
+    std::vector<typename BondEnds<dim>::Term> terms;
+    rows.for_each_beyond(i, [&](const auto &bond) {
+      if (!rows.is_whole(bond.number))
+        return;
+      const FictitiousImages<dim> &images = *ends.images;
+      const unsigned int           image  = ends.image(bond.neighbor);
+      terms.clear();
+      images.for_each_term(image, [&](const auto &term) { terms.push_back(term); });
+      const Point<dim> &mirror = families.nodes().lattice() ? images[image].place :
+                                                              images.twice_planes(image);
+      if (is_cut<dim>(families, i, terms, mirror))
+        rows.mark(bond.number, BondState::parted, t);
+    });
   }
 
 
   template <int dim>
-  bool SolidBonds<dim>::has_parted(const unsigned int i, const BondState &state) const
+  bool SolidBonds<dim>::has_parted(const unsigned int i) const
   {
-    bool any = beyond && beyond->is_parted(i);
+    bool any = false;
     rows.for_each_stored(i, [&](const auto &bond) {
-      any = any || state.is_parted(bond.number) ||
-            (!state.is_whole(bond.number) && families.cracks().cuts(i, bond.neighbor));
+      any = any || rows.body.state.is_parted(bond.number) ||
+            (!rows.is_whole(bond.number) && families.cracks().cuts(i, bond.neighbor));
+    });
+    rows.for_each_beyond(i, [&](const auto &bond) {
+      const std::size_t k = rows.place(bond.number);
+      // What was cut from the start has never had a weight.
+      any = any || (rows.beyond.state.is_parted(k) && rows.beyond.squares[k] > 0.);
     });
     return any;
   }
 
 
   template <int dim>
-  void SolidBonds<dim>::renew_weights(const std::vector<unsigned int> &of_nodes,
-                                      const BondState                 &state)
+  double SolidBonds<dim>::weight_left(const unsigned int i, std::string &message) const
+  {
+    std::vector<typename Families<dim>::Member> family;
+    families.members_of(i, family);
+    double outside = 0.;
+    rows.for_each_beyond(i, [&](const auto &bond) {
+      const std::size_t k = rows.place(bond.number);
+      if (!rows.beyond.state.is_parted(k))
+        outside += rows.beyond.squares[k] / families.nodes().volume(i);
+    });
+    return laws.weight_of(families, i, family, message) + outside;
+  }
+
+
+  template <int dim>
+  void SolidBonds<dim>::renew_springs(const unsigned int i)
+  {
+    BondRows<dim> &stored = rows.body;
+    if (!stored.is_packed() && !rows.is_on_lattice(i)) // packed ones follow from q
+      {
+        std::vector<typename Families<dim>::Member> family;
+        families.members_of(i, family);
+        std::size_t       k   = stored.starts[rows.row_in_body(i)];
+        const std::size_t end = stored.starts[rows.row_in_body(i) + 1];
+        for (const auto &bond : family)
+          if (k < end && stored.neighbors[k] == bond.neighbor && bond.weight != 0.)
+            {
+              const double square =
+                bond.weight * families.neighbors().bond_vector(i, bond.neighbor).norm_square();
+              if (stored.state.is_whole(k))
+                stored.springs[k] =
+                  LinearPeridynamicSolid::spring(rows.stiffnesses(i, bond.neighbor), square);
+              ++k;
+            }
+      }
+    rows.for_each_beyond(i, [&](const auto &bond) {
+      const std::size_t k = rows.place(bond.number);
+      if (rows.is_whole(bond.number))
+        rows.beyond.springs[k] =
+          LinearPeridynamicSolid::spring(laws.stiffness(i), rows.beyond.squares[k]);
+    });
+  }
+
+
+  template <int dim>
+  void SolidBonds<dim>::renew_weights(const std::vector<unsigned int> &of_nodes)
   {
     std::string message;
     for (const unsigned int i : of_nodes)
-      if (has_parted(i, state))
+      if (has_parted(i))
         {
-          const double q = rows.weight_left(i, message);
+          const double q = weight_left(i, message);
           if (weights_follow)
-            laws.weighted.local_element(i) = q + (beyond ? beyond->weight_left(i) : 0.);
+            laws.weighted.local_element(i) = q;
         }
     throw_on_all_if_any(families.nodes().communicator(), message);
     laws.weighted.update_ghost_values();
@@ -164,26 +245,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidBonds<dim>::apply_change(const ChangeSet<dim> &change,
-                                     BondState            &state,
-                                     const bool            marked)
+  void SolidBonds<dim>::apply_change(const ChangeSet<dim> &change, const bool marked)
   {
     const Neighbors<dim> &neighbors = families.neighbors();
     const double          reach     = families.weights().reach();
     // On a mesh nodes follow from others that lie farther away.
-    const double touched = beyond && !families.nodes().lattice() ? halo_of_images(reach) : reach;
+    const double touched = ends.images && !families.nodes().lattice() ? halo_of_images(reach) :
+                                                                        reach;
     families.cracks().apply_change(change);
     const std::vector<unsigned int> near = neighbors.nodes_near(change.cuts, touched);
     if (!marked)
       for (const unsigned int i : near)
-        part(i, change.since, state);
-    renew_weights(near, state);
+        part(i, change.since);
+    renew_weights(near);
     for (const unsigned int i : neighbors.nodes_near(change.cuts, touched + reach))
-      {
-        rows.renew_springs(i, state);
-        if (beyond)
-          beyond->renew_springs(i, laws);
-      }
+      renew_springs(i);
   }
 
 

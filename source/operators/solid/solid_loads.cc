@@ -86,7 +86,7 @@ namespace PeriDeal
     , nodes(bonds.families.nodes())
     , tractions(traction_shares(nodes, body.boundary_conditions))
   {
-    if (bonds.beyond && nodes.lattice() && nodes.lattice()->at_centers &&
+    if (bonds.ends.images && nodes.lattice() && nodes.lattice()->at_centers &&
         body.boundary_conditions.traction_layer <= 0.)
       draw_on_to_side(bonds.families, body.boundary_conditions, beyond_sides(body), tractions);
   }

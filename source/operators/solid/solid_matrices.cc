@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
@@ -16,163 +15,13 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  namespace
-  {
-    /** Adds the stiffness across a bond whose moment is as long as @p length. */
-    template <int dim>
-    void add_across(const double          across,
-                    const double          length,
-                    const Tensor<1, dim> &moment,
-                    Tensor<2, dim>       &block)
-    {
-      block += across * (Tensor<2, dim>(unit_symmetric_tensor<dim>()) -
-                         outer_product(moment, moment) / (length * length));
-    }
-  } // namespace
-
-
-  /*
-   * With g_i . u = sum_j W xi . (u_j - u_i) over the bonds of node i,
-   *
-   *   K = sum_i c d/(V q^2) g_i g_i^T + sum over bonds of spring (W xi) (W xi)^T (1 -1; -1 1)
-   *
-   * so that the visit of node i gives rows of its whole family, also of those nodes that other
-   * processes own.
-   */
-  template <int dim>
-  void assemble_matrix(const SolidBonds<dim>             &bonds,
-                       const BondState                   &state,
-                       const Utilities::MPI::Partitioner &unknowns,
-                       TrilinosWrappers::SparseMatrix    &matrix)
-  {
-    const Nodes<dim>                    &nodes      = bonds.families.nodes();
-    const FictitiousBonds<dim>          *beyond     = bonds.beyond.get();
-    const bool                           volumetric = bonds.laws.volumetric;
-    const IndexSet                       owned      = unknowns.locally_owned_range();
-    IndexSet                             written(owned.size());
-    std::vector<types::global_dof_index> indices;
-    std::vector<Tensor<1, dim>>          moment;
-    std::vector<unsigned int>            members; // of the family, the node itself first
-    const auto                           place_of_member = [&](const unsigned int j) {
-      return std::find(members.begin(), members.end(), j) - members.begin();
-    };
-    const auto find_family = [&](const unsigned int i) {
-      const auto add = [&](const unsigned int j, const Tensor<1, dim> &p) {
-        for (unsigned int d = 0; d < dim; ++d)
-          indices.push_back(unknowns.local_to_global(dim * j + d));
-        moment.push_back(p);
-        members.push_back(j);
-      };
-      indices.clear();
-      moment.clear();
-      members.clear();
-      add(i, Tensor<1, dim>());
-      bonds.rows.for_each(i, [&](const auto &bond) {
-        add(bond.neighbor, bond.moment);
-        moment[0] -= bond.moment;
-      });
-      if (!beyond)
-        return;
-      beyond->for_each_of(i, [&](const auto &bond) {
-        moment[0] -= bond.moment;
-        beyond->images().for_each_term(bond.image, [&](const auto &term) {
-          const std::size_t place = place_of_member(term.node);
-          if (place == members.size())
-            add(term.node, Tensor<1, dim>());
-          for (unsigned int d = 0; d < dim; ++d)
-            moment[place][d] += term.of_component(d) * bond.moment[d];
-        });
-      });
-    };
-    const auto has_images = [&](const unsigned int i) {
-      bool has = false;
-      if (beyond)
-        beyond->for_each_of(i, [&](const auto &) { has = true; });
-      return has;
-    };
-    for (unsigned int k = 0; k < dim * nodes.n_local(); ++k)
-      written.add_index(unknowns.local_to_global(k));
-    TrilinosWrappers::SparsityPattern pattern(owned, owned, written, nodes.communicator());
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        find_family(i);
-        for (std::size_t row = 0; row < indices.size(); ++row)
-          if (volumetric || row < dim || has_images(i))
-            pattern.add_entries(indices[row], indices.begin(), indices.end());
-      }
-    pattern.compress();
-    matrix.reinit(pattern);
-
-    FullMatrix<double> local;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        find_family(i);
-        local.reinit(indices.size(), indices.size());
-        const double size = bonds.laws.tension(i, 1.);
-        for (std::size_t row = 0; volumetric && row < indices.size(); ++row)
-          for (std::size_t column = 0; column < indices.size(); ++column)
-            local(row, column) =
-              size * moment[row / dim][row % dim] * moment[column / dim][column % dim];
-        std::size_t k = 1;
-        bonds.rows.for_each(i, [&](const auto &bond) {
-          Tensor<2, dim> block = bond.spring * outer_product(bond.moment, bond.moment);
-          if (bonds.kinematics.is_full() && state.is_whole(bond.number))
-            add_across(bonds.kinematics.stiffness_across(bond),
-                       bonds.kinematics.length(bond),
-                       bond.moment,
-                       block);
-          for (unsigned int d = 0; d < dim; ++d)
-            for (unsigned int e = 0; e < dim; ++e)
-              {
-                local(d, e) += block[d][e];
-                local(d, dim * k + e) -= block[d][e];
-              }
-          ++k;
-        });
-        if (beyond)
-          beyond->for_each_of(i, [&](const auto &bond) {
-            // What the bond has of its extension, and of what is across it.
-            std::vector<std::pair<std::size_t, Tensor<1, dim>>> parts;
-            Tensor<1, dim>                                      own;
-            for (unsigned int d = 0; d < dim; ++d)
-              own[d] = -1.;
-            parts.emplace_back(0, own);
-            beyond->images().for_each_term(bond.image, [&](const auto &term) {
-              Tensor<1, dim> of_term;
-              for (unsigned int d = 0; d < dim; ++d)
-                of_term[d] = term.of_component(d);
-              parts.emplace_back(place_of_member(term.node), of_term);
-            });
-            Tensor<2, dim> block = bond.spring * outer_product(bond.moment, bond.moment);
-            if (bond.whole)
-              add_across(beyond->stiffness_across(bond), beyond->length(bond), bond.moment, block);
-            for (const auto &[row, of_row] : parts)
-              for (const auto &[column, of_column] : parts)
-                for (unsigned int d = 0; d < dim; ++d)
-                  for (unsigned int e = 0; e < dim; ++e)
-                    local(dim * row + d, dim * column + e) +=
-                      of_row[d] * block[d][e] * of_column[e];
-          });
-        const std::size_t n_rows = volumetric || has_images(i) ? indices.size() : dim;
-        for (std::size_t row = 0; row < n_rows; ++row)
-          matrix.add(indices[row],
-                     static_cast<types::global_dof_index>(indices.size()),
-                     indices.data(),
-                     &local(row, 0));
-      }
-    matrix.compress(VectorOperation::add);
-  }
-
-
   template <int dim>
   void make_surrogate(const SolidBonds<dim>          &bonds,
-                      const BondState                &state,
                       const BodyParameters<dim>      &body,
                       const Vector                   &diagonal,
                       const Vector                   &held,
                       TrilinosWrappers::SparseMatrix &matrix)
   {
-    using LatticeBond                           = typename SolidRows<dim>::LatticeBond;
     const Families<dim>               &families = bonds.families;
     const Nodes<dim>                  &nodes    = families.nodes();
     const Utilities::MPI::Partitioner &unknowns = *diagonal.get_partitioner();
@@ -189,11 +38,11 @@ namespace PeriDeal
         is = is && std::abs(xi[d]) < 1.5 * nodes.lattice()->spacing[d];
       return is;
     };
-    std::vector<LatticeBond> close; // those that are near
-    std::copy_if(bonds.rows.bonds_on_lattice().begin(),
-                 bonds.rows.bonds_on_lattice().end(),
+    std::vector<UnitBond<dim>> close; // those that are near
+    std::copy_if(bonds.rows.body.units.begin(),
+                 bonds.rows.body.units.end(),
                  std::back_inserter(close),
-                 [](const LatticeBond &bond) {
+                 [](const UnitBond<dim> &bond) {
                    return std::all_of(bond.offset.begin(), bond.offset.end(), [](const int n) {
                      return std::abs(n) <= 1;
                    });
@@ -206,7 +55,7 @@ namespace PeriDeal
             return;
           // As q, that of the body before bonds broke.
           sums.local_element(i) += nodes.volume(bond.neighbor) * xi.norm_square();
-          if (bond.number == SolidRows<dim>::not_stored || state.is_whole(bond.number))
+          if (bonds.rows.is_whole(bond.number))
             near.push_back(bond.neighbor);
           else
             damaged[i] = true;
@@ -272,14 +121,13 @@ namespace PeriDeal
             add(j, -block);
           }
         // Between cell centres a plane of symmetry holds nodes by bonds to their own images.
-        if (bonds.beyond)
-          bonds.beyond->for_each_of(i, [&](const auto &bond) {
-            const Tensor<1, dim> xi = bonds.beyond->bond_vector(bond);
-            if (bond.whole && bonds.beyond->is_own_image(bond) && is_near(i, xi))
-              own += 4. * nodes.volume(i) * bonds.beyond->images()[bond.image].volume *
-                     extension[i] / sums.local_element(i) / xi.norm_square() *
-                     outer_product(xi, xi);
-          });
+        bonds.rows.for_each_beyond(i, [&](const auto &bond) {
+          const Tensor<1, dim> xi = bonds.ends.vector(i, bond.neighbor);
+          if (bonds.rows.is_whole(bond.number) && bonds.ends.is_own_image(i, bond.neighbor) &&
+              is_near(i, xi))
+            own += 4. * nodes.volume(i) * bonds.ends.volume(bond.neighbor) * extension[i] /
+                   sums.local_element(i) / xi.norm_square() * outer_product(xi, xi);
+        });
         // Springs alone would not hold every node, and hardly those that few are left of.
         const double share = own == Tensor<2, dim>() ? 1. : damaged[i] ? 1e-2 : 1e-8;
         for (unsigned int d = 0; d < dim; ++d)
@@ -301,7 +149,7 @@ namespace PeriDeal
     {
       // The energy is 1/4 sum over directed bonds of s (p . eta)^2 + 1/2 sum m_k (sum p . eta)^2.
       Tensor<1, dim> sum, own;
-      bonds.rows.for_each(i, [&](const auto &bond) {
+      bonds.rows.for_each_in_body(i, [&](const auto &bond) {
         const double factors = bond.spring + factor(bond.neighbor);
         sum += bond.moment;
         for (unsigned int d = 0; d < dim; ++d)
@@ -324,6 +172,77 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /**
+     * Add what bonds to fictitious nodes change of the diagonal of K, whose dilatations of node i
+     * have the factor c d/(q^2 V) in @p factor. Collective.
+     */
+    template <int dim>
+    void add_diagonal_beyond(const SolidBonds<dim>     &bonds,
+                             const std::vector<double> &factor,
+                             Vector                    &diagonal)
+    {
+      // theta_i is a sum over coefficients of displacements. What images change of these, and what
+      // was counted without them:
+      Vector                      sum(diagonal.get_partitioner());
+      std::vector<Tensor<1, dim>> own(bonds.families.nodes().n_local()), change(own.size());
+      std::vector<unsigned int>   touched;
+      std::vector<bool>           is_touched(own.size(), false);
+      const auto                  touch = [&](const unsigned int node) {
+        if (!is_touched[node])
+          touched.push_back(node);
+        is_touched[node] = true;
+      };
+      const auto add = [&](const unsigned int node, const double size, const Tensor<1, dim> &p) {
+        for (unsigned int d = 0; d < dim; ++d)
+          sum.local_element(dim * node + d) += size * p[d] * p[d];
+      };
+      for (const unsigned int i : bonds.rows.beyond.nodes)
+        {
+          touched.clear();
+          bonds.rows.for_each_beyond(i, [&](const auto &bond) {
+            Tensor<1, dim> of_node = bond.moment;
+            touch(i);
+            change[i] -= bond.moment;
+            bonds.ends.images->for_each_term(bonds.ends.image(bond.neighbor),
+                                             [&](const auto &term) {
+                                               Tensor<1, dim> p;
+                                               for (unsigned int d = 0; d < dim; ++d)
+                                                 p[d] = term.of_component(d) * bond.moment[d];
+                                               if (term.node == i)
+                                                 of_node -= p;
+                                               else
+                                                 add(term.node, bond.spring, p);
+                                               touch(term.node);
+                                               change[term.node] += p;
+                                             });
+            add(i, bond.spring, of_node);
+          });
+          own[i] = Tensor<1, dim>();
+          bonds.rows.for_each_in_body(i, [&](const auto &bond) {
+            own[bond.neighbor] = bond.moment;
+            own[i] -= bond.moment;
+          });
+          for (const unsigned int node : touched)
+            {
+              for (unsigned int d = 0; d < dim; ++d)
+                sum.local_element(dim * node + d) +=
+                  factor[i] * change[node][d] * (change[node][d] + 2. * own[node][d]);
+              change[node]     = Tensor<1, dim>();
+              is_touched[node] = false;
+            }
+          bonds.rows.for_each_in_body(i, [&](const auto &bond) {
+            own[bond.neighbor] = Tensor<1, dim>();
+          });
+          own[i] = Tensor<1, dim>();
+        }
+      sum.compress(VectorOperation::add);
+      diagonal += sum;
+    }
+  } // namespace
+
+
   template <int dim>
   void find_stiffness_diagonal(const SolidBonds<dim> &bonds, Vector &diagonal)
   {
@@ -334,7 +253,7 @@ namespace PeriDeal
     unsigned int regular = numbers::invalid_unsigned_int; // the first of those that are all alike
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const bool is_regular = bonds.rows.is_regular(i);
+        const bool is_regular = bonds.sums.is_regular(i);
         if (is_regular && regular != numbers::invalid_unsigned_int)
           {
             for (unsigned int d = 0; d < dim; ++d)
@@ -349,8 +268,8 @@ namespace PeriDeal
         if (is_regular)
           regular = i;
       }
-    if (bonds.beyond)
-      bonds.beyond->add_to_diagonal(diagonal, bonds.rows, factors);
+    if (bonds.ends.images)
+      add_diagonal_beyond(bonds, factors, diagonal);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       hold_diagonal(bonds, i, diagonal);
   }
@@ -375,21 +294,90 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                           \
-  template void find_stiffness_diagonal(const SolidBonds<dim> &, Vector &); \
-  template void mend_stiffness_diagonal(const SolidBonds<dim> &,            \
-                                        const std::vector<unsigned int> &,  \
-                                        Vector &);                          \
-  template void assemble_matrix(const SolidBonds<dim> &,                    \
-                                const BondState &,                          \
-                                const Utilities::MPI::Partitioner &,        \
-                                TrilinosWrappers::SparseMatrix &);          \
-  template void make_surrogate(const SolidBonds<dim> &,                     \
-                               const BondState &,                           \
-                               const BodyParameters<dim> &,                 \
-                               const Vector &,                              \
-                               const Vector &,                              \
-                               TrilinosWrappers::SparseMatrix &);
+  template <int dim>
+  Vector find_sums_of_dilatations(const SolidBonds<dim> &bonds)
+  {
+    const Nodes<dim> &nodes = bonds.families.nodes();
+    Vector            sums(nodes.partitioner());
+    for (unsigned int i = 0; i < nodes.n_owned() && bonds.laws.volumetric; ++i)
+      {
+        double         length = 0.;
+        Tensor<1, dim> sum;
+        bonds.rows.for_each(i, [&](const auto &bond) {
+          if (bonds.ends.is_fictitious(bond.neighbor))
+            length += bond.moment.norm() *
+                      (1. + bonds.ends.images->sum_of_factors(bonds.ends.image(bond.neighbor)));
+          else
+            {
+              length += bond.moment.norm();
+              sum += bond.moment;
+            }
+        });
+        length += sum.norm();
+        sums.local_element(i) = std::abs(bonds.laws.tension(i, length));
+      }
+    sums.update_ghost_values();
+    return sums;
+  }
+
+
+  template <int dim>
+  Vector find_row_sums(const SolidBonds<dim> &bonds,
+                       const Vector          &of_dilatations,
+                       const bool             of_tangent)
+  {
+    Vector     rows(bonds.families.nodes().partitioner());
+    const bool across = bonds.kinematics.is_full();
+    for (const unsigned int i : bonds.rows.beyond.nodes)
+      bonds.rows.for_each_beyond(i, [&](const auto &bond) {
+        const FictitiousImages<dim> &images = *bonds.ends.images;
+        const unsigned int           image  = bonds.ends.image(bond.neighbor);
+        const double                 p      = bond.moment.norm();
+        const double                 all    = 1. + images.sum_of_factors(image);
+        const double                 size = bond.spring * p * all + of_dilatations.local_element(i);
+        const double aside = across ? std::abs(bonds.kinematics.stiffness_across(bond)) : 0.;
+        rows.local_element(i) += size * p;
+        images.for_each_term(image, [&](const auto &term) {
+          double largest = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            largest = std::max(largest, std::abs(term.of_component(d)));
+          rows.local_element(term.node) += size * largest * p;
+          rows.local_element(term.node) += largest * aside * all;
+        });
+        rows.local_element(i) += aside * all;
+      });
+    rows.compress(VectorOperation::add);
+    for (unsigned int i = 0; i < rows.locally_owned_size(); ++i)
+      {
+        double        &row = rows.local_element(i);
+        Tensor<1, dim> sum;
+        bonds.rows.for_each_in_body(i, [&](const auto &bond) {
+          row += 2. * bond.spring * bond.moment.norm_square() +
+                 of_dilatations.local_element(bond.neighbor) * bond.moment.norm();
+          sum += bond.moment;
+        });
+        if (of_tangent && across)
+          bonds.rows.for_each_stored(i, [&](const auto &bond) {
+            row += 2. * std::abs(bonds.kinematics.stiffness_across(bond));
+          });
+        row += of_dilatations.local_element(i) * sum.norm();
+      }
+    return rows;
+  }
+
+
+#define PERIDEAL_INSTANTIATE(dim)                                                     \
+  template void   find_stiffness_diagonal(const SolidBonds<dim> &, Vector &);         \
+  template void   mend_stiffness_diagonal(const SolidBonds<dim> &,                    \
+                                          const std::vector<unsigned int> &,          \
+                                          Vector &);                                  \
+  template Vector find_sums_of_dilatations(const SolidBonds<dim> &);                  \
+  template Vector find_row_sums(const SolidBonds<dim> &, const Vector &, const bool); \
+  template void   make_surrogate(const SolidBonds<dim> &,                             \
+                                 const BodyParameters<dim> &,                         \
+                                 const Vector &,                                      \
+                                 const Vector &,                                      \
+                                 TrilinosWrappers::SparseMatrix &);
   PERIDEAL_INSTANTIATE(1)
   PERIDEAL_INSTANTIATE(2)
   PERIDEAL_INSTANTIATE(3)

@@ -17,29 +17,29 @@ namespace PeriDeal
     /** CrackContact::FamilyOf. */
     template <int dim>
     double family_of(const SolidBonds<dim>        &solid,
-                     const BondState              &state,
                      const BodyParameters<dim>    &body,
                      const unsigned int            node,
                      std::vector<FacingBond<dim>> &list)
     {
-      const SolidRows<dim> &rows = solid.rows;
       list.clear();
-      if (rows.is_on_lattice(node))
+      if (solid.rows.is_on_lattice(node))
         return 0.;
+      const BondRows<dim>                        &rows = solid.rows.body;
+      const std::size_t                           row  = solid.rows.row_in_body(node);
       std::vector<typename Families<dim>::Member> family;
       std::vector<std::pair<unsigned int, int>>   crossed;
       solid.families.members_of(node, family);
       const double own = solid.laws.stiffness(node), tiny = 1e-9 * body.horizon();
       double       all = 0.; // of q, as if there were no crack
-      std::size_t  k   = rows.begin_of(node);
+      std::size_t  k   = rows.starts[row];
       bool         any = false;
       for (const auto &member : family)
         {
           const unsigned int   j  = member.neighbor;
           const Tensor<1, dim> xi = solid.families.neighbors().bond_vector(node, j);
           bool                 is_lost;
-          if (k < rows.end_of(node) && rows.neighbor(k) == j) // left out are those cut at first
-            is_lost = !state.is_whole(k++);
+          if (k < rows.starts[row + 1] && rows.neighbors[k] == j) // left out are those cut at first
+            is_lost = !rows.state.is_whole(k++);
           else
             {
               solid.families.cracks().crossed_cracks(node, j, crossed);
@@ -74,7 +74,7 @@ namespace PeriDeal
 
     /** Of owned nodes, for ShortRangeContact. */
     template <int dim>
-    std::vector<double> stiffnesses(const SolidRows<dim> &rows, const unsigned int n_owned)
+    std::vector<double> stiffnesses(const BondTable<dim> &rows, const unsigned int n_owned)
     {
       // So many nodes of a plane of the lattice touch one of another body. At a surface a node
       // lacks half of its bonds: all of these together give it back half of what it lacks.
@@ -96,13 +96,12 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<SolidContact> make_crack_contact(
     const SolidBonds<dim>                                    &solid,
-    const BondState                                          &state,
     const BodyParameters<dim>                                &body,
     const std::shared_ptr<const Utilities::MPI::Partitioner> &layout)
   {
     return std::make_unique<CrackContact<dim>>(
       [&](const unsigned int node, std::vector<FacingBond<dim>> &bonds) {
-        return family_of(solid, state, body, node, bonds);
+        return family_of(solid, body, node, bonds);
       },
       solid.families.nodes(),
       layout);
@@ -134,7 +133,6 @@ namespace PeriDeal
 #define PERIDEAL_INSTANTIATE(dim)                                       \
   template std::unique_ptr<SolidContact> make_crack_contact<dim>(       \
     const SolidBonds<dim> &,                                            \
-    const BondState &,                                                  \
     const BodyParameters<dim> &,                                        \
     const std::shared_ptr<const Utilities::MPI::Partitioner> &);        \
   template std::unique_ptr<SolidContact> make_short_range_contact<dim>( \

@@ -20,7 +20,6 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<SolidContact> make_crack_contact(
     const SolidBonds<dim>                                            &solid,
-    const BondState                                                  &state,
     const BodyParameters<dim>                                        &body,
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &layout);
 

@@ -48,7 +48,7 @@ namespace PeriDeal
     if (!body.elasticity.contact)
       return;
     if (!nonlinear() && this->may_part())
-      this->set_contact(make_crack_contact(solid, breakage.broken_state(), body, this->nodes));
+      this->set_contact(make_crack_contact(solid, body, this->nodes));
     if (nonlinear() && !body.elasticity.is_static())
       this->set_contact(make_short_range_contact(solid, body));
   }
@@ -91,7 +91,7 @@ namespace PeriDeal
       nodes.n_local(),
       [&](const unsigned int i) { return this->thermal_strain_at(i); },
       nodes.communicator());
-    solid.kinematics.forget_exceeding();
+    solid.kinematics.take_thermal_strains();
     this->set_contact_strains();
     find_thermal_loads();
   }
@@ -100,31 +100,14 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_thermal_loads()
   {
-    if (solid.beyond && (solid.thermal.any() || this->temperature_change().size() > 0))
-      solid.beyond->set_thermal_strains(solid.thermal);
     if (solid.thermal.any() && !nonlinear()) // with full kinematics it is in the extensions
       {
         scratch = 0.;
         find_tensions(scratch, true);
-        const double *const t = tau.begin();
-        for (unsigned int i = 0; i < solid.families.nodes().n_owned(); ++i)
-          {
-            Tensor<1, dim> force;
-            solid.rows.for_each(i, [&](const auto &bond) {
-              force += (bond.spring * solid.kinematics.extension_moment(scratch.begin(), i, bond) +
-                        t[i] + t[bond.neighbor]) *
-                       bond.moment;
-            });
-            for (unsigned int d = 0; d < dim; ++d)
-              thermal_loads.local_element(dim * i + d) = force[d];
-          }
-        if (solid.beyond)
-          {
-            thermal_loads *= -1.;
-            solid.beyond->add_strained_forces(thermal_loads, scratch, tau);
-            solid.beyond->keep_forces();
-            thermal_loads *= -1.;
-          }
+        solid.kinematics.find_forces(thermal_loads, scratch.begin(), tau);
+        thermal_loads *= -1.;
+        if (solid.ends.images)
+          solid.ends.images->keep_forces();
       }
     this->keep_constant_loads();
   }
@@ -138,9 +121,7 @@ namespace PeriDeal
     if (strained)
       solid.kinematics.find_tensions(tau.begin(), u.begin(), solid.laws);
     else
-      solid.rows.find_tensions(tau.begin(), u.begin());
-    if (solid.beyond)
-      solid.beyond->add_tensions(tau, u, solid.laws, strained);
+      solid.sums.find_tensions(tau.begin(), u.begin());
     tau.update_ghost_values();
   }
 
@@ -148,16 +129,10 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::sum_forces(Vector &y, const Vector &x, const bool with_dilatations) const
   {
-    const bool          volumetric = with_dilatations && solid.laws.volumetric;
-    const double *const tensions   = volumetric ? tau.begin() : nullptr;
+    const bool volumetric = with_dilatations && solid.laws.volumetric;
     if (volumetric)
       find_tensions(x, false);
-    solid.rows.find_forces(y.begin(), x.begin(), tensions);
-    if (!solid.beyond)
-      return;
-    if (!volumetric) // else they have been found
-      solid.beyond->images().find(x.begin());
-    solid.beyond->add_forces(y, x, tensions);
+    solid.sums.find_forces(y, x.begin(), volumetric ? tau.begin() : nullptr);
   }
 
 
@@ -167,9 +142,7 @@ namespace PeriDeal
     x.update_ghost_values();
     sum_forces(y, x, true);
     if (nonlinear())
-      solid.kinematics.add_geometric_forces(y, x.begin(), breakage.broken_state());
-    if (nonlinear() && solid.beyond)
-      solid.beyond->add_geometric_forces(y, x);
+      solid.kinematics.add_geometric_forces(y, x.begin());
     x.set_ghost_state(false);
   }
 
@@ -195,8 +168,6 @@ namespace PeriDeal
     u.update_ghost_values();
     find_tensions(u, true);
     solid.kinematics.find_forces(y, u.begin(), tau);
-    if (solid.beyond)
-      solid.beyond->add_strained_forces(y, u, tau);
     u.set_ghost_state(false);
   }
 
@@ -209,8 +180,6 @@ namespace PeriDeal
     u.update_ghost_values();
     find_tensions(u, true);
     solid.kinematics.linearize(u.begin(), tau);
-    if (solid.beyond)
-      solid.beyond->linearize(u, tau);
     u.set_ghost_state(false);
     contact->linearize(u);
   }
@@ -250,10 +219,10 @@ namespace PeriDeal
     reactions -= all_loads;
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     conditions->add_reactions(reactions, sums);
-    if (solid.beyond)
+    if (solid.ends.images)
       {
         // Bonds to mirror images pull at the body; those of the last application are known.
-        for (const auto &[side, force] : solid.beyond->images().forces_of_planes())
+        for (const auto &[side, force] : solid.ends.images->forces_of_planes())
           if (force != Tensor<1, dim>())
             sums[side] += force;
       }
@@ -270,8 +239,7 @@ namespace PeriDeal
     const Nodes<dim> &nodes = solid.families.nodes();
     u.update_ghost_values();
     find_tensions(u, solid.kinematics.is_strained());
-    double sum = solid.beyond ? solid.beyond->energy(u) : 0.;
-    sum += solid.kinematics.energy_of_extensions(u.begin());
+    double sum = solid.kinematics.energy_of_extensions(u.begin());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const StateLaw &law = solid.laws[i];
@@ -301,28 +269,14 @@ namespace PeriDeal
                                          const bool    of_tangent,
                                          const double  factor) const
   {
-    const Nodes<dim> &nodes   = solid.families.nodes();
-    const Vector      beyond  = solid.beyond ? solid.beyond->row_sums(of_dilatations) :
-                                               Vector(nodes.partitioner());
-    double            largest = 0.;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+    const Vector rows    = find_row_sums(solid, of_dilatations, of_tangent);
+    double       largest = 0.;
+    for (unsigned int i = 0; i < rows.locally_owned_size(); ++i)
       {
-        double         row = beyond.local_element(i);
-        Tensor<1, dim> sum;
-        solid.rows.for_each(i, [&](const auto &bond) {
-          row += 2. * bond.spring * bond.moment.norm_square() +
-                 of_dilatations.local_element(bond.neighbor) * bond.moment.norm();
-          sum += bond.moment;
-        });
-        if (of_tangent && nonlinear())
-          solid.rows.for_each_stored(i, [&](const auto &bond) {
-            row += 2. * std::abs(solid.kinematics.stiffness_across(bond));
-          });
-        row += of_dilatations.local_element(i) * sum.norm();
-        row += of_tangent ? contact->row_bound(i) : 0.;
-        largest = std::max(largest, factor * row / mass.local_element(dim * i));
+        const double row = rows.local_element(i) + (of_tangent ? contact->row_bound(i) : 0.);
+        largest          = std::max(largest, factor * row / mass.local_element(dim * i));
       }
-    return Utilities::MPI::max(largest, nodes.communicator());
+    return Utilities::MPI::max(largest, solid.families.nodes().communicator());
   }
 
 
@@ -336,23 +290,7 @@ namespace PeriDeal
   template <int dim>
   Spectrum StateOperator<dim>::spectrum() const
   {
-    // Rows of |K|: twice the springs, and for the dilatations |c_ij| summed over both of their
-    // ends.
-    const Nodes<dim> &nodes = solid.families.nodes();
-    Vector            of_dilatations(nodes.partitioner());
-    for (unsigned int i = 0; i < nodes.n_owned() && solid.laws.volumetric; ++i)
-      {
-        double         length = 0.;
-        Tensor<1, dim> sum;
-        solid.rows.for_each(i, [&](const auto &bond) {
-          length += bond.moment.norm();
-          sum += bond.moment;
-        });
-        length += solid.beyond ? solid.beyond->sum_of_lengths(i) : 0.;
-        length += sum.norm();
-        of_dilatations.local_element(i) = std::abs(solid.laws.tension(i, length));
-      }
-    of_dilatations.update_ghost_values();
+    const Vector of_dilatations = find_sums_of_dilatations(solid);
     const double bound = largest_row(of_dilatations, true, std::sqrt(static_cast<double>(dim)));
     return {bound, sharp_bound(*this, bound, [&](Vector &vector) { this->fill_noise(vector); })};
   }
@@ -361,12 +299,7 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    make_surrogate(solid,
-                   breakage.broken_state(),
-                   body,
-                   stiffness_diagonal,
-                   this->held_unknowns(),
-                   matrix);
+    make_surrogate(solid, body, stiffness_diagonal, this->held_unknowns(), matrix);
   }
 
   template <int dim>
@@ -377,7 +310,7 @@ namespace PeriDeal
     unsigned int n_found = 0;
     bool         broken  = false;
     solid.rows.for_each_stored(corner.node, [&](const auto &bond) {
-      broken = broken || !breakage.broken_state().is_whole(bond.number);
+      broken = broken || !solid.rows.is_whole(bond.number);
       if (std::find(corner.others.begin(), corner.others.end(), bond.neighbor) !=
           corner.others.end())
         ++n_found;
@@ -415,18 +348,19 @@ namespace PeriDeal
   OperatorSize StateOperator<dim>::size() const
   {
     const MPI_Comm        all  = solid.families.nodes().communicator();
-    const SolidRows<dim> &rows = solid.rows;
+    const BondTable<dim> &rows = solid.rows;
     OperatorSize          size;
     size.unknowns = mass.size();
-    size.bonds    = std::llround(Utilities::MPI::sum(rows.n_bonds(), all));
+    size.bonds    = std::llround(Utilities::MPI::sum(rows.n_bonds, all));
     size.nonzeros =
-      std::llround(Utilities::MPI::sum(static_cast<double>(rows.n_stored()) * (dim + 1.), all));
+      std::llround(Utilities::MPI::sum(static_cast<double>(rows.body.size()) * (dim + 1.), all));
     size.memory = solid.families.memory_consumption() + breakage.memory_consumption() +
                   solid.laws.memory_consumption() + solid.thermal.memory_consumption() +
                   solid.kinematics.memory_consumption() + rows.memory_consumption() +
-                  (solid.beyond ? solid.beyond->memory_consumption() : 0) +
+                  solid.sums.memory_consumption() +
+                  (solid.ends.images ? solid.ends.images->memory_consumption() : 0) +
                   contact->memory_consumption();
-    size.form = rows.has_lattice() ? "lattice" : "stored";
+    size.form = solid.sums.has_lattice() ? "lattice" : "stored";
     return size;
   }
 
@@ -436,8 +370,7 @@ namespace PeriDeal
                                        const Vector                    &u) const
   {
     u.update_ghost_values();
-    if (solid.beyond)
-      solid.beyond->images().find(u.begin());
+    solid.ends.find(u.begin());
     double sum = 0.;
     for (const unsigned int i : of_nodes)
       {
@@ -445,16 +378,11 @@ namespace PeriDeal
         solid.rows.for_each(i, [&](const auto &bond) {
           const double product = solid.kinematics.extension_moment(u.begin(), i, bond);
           own += product;
-          of_node += 0.25 * bond.spring * product * product;
+          of_node += (solid.ends.is_fictitious(bond.neighbor) ? 1. : 0.5) *
+                     LinearPeridynamicSolid::bond_energy(bond.spring, product);
         });
-        if (solid.beyond)
-          solid.beyond->for_each_of(i, [&](const auto &bond) {
-            const double product = solid.beyond->extension_moment(bond, u.begin());
-            own += product;
-            of_node += 0.5 * bond.spring * product * product;
-          });
         if (solid.laws.volumetric)
-          of_node += 0.5 * solid.laws.tension(i, own) * own;
+          of_node += LinearPeridynamicSolid::node_energy(solid.laws.tension(i, own), own);
         sum += of_node;
       }
     u.set_ghost_state(false);
@@ -470,11 +398,10 @@ namespace PeriDeal
     change.reinit(tau.get_partitioner());
     for (const unsigned int i : breakage.nodes_at_work())
       {
-        double sum = 0.;
-        solid.rows.for_each_stored(i, [&](const auto &bond) {
-          sum += solid.kinematics.extension_moment(u.begin(), i, bond);
-        });
-        const double now        = solid.laws.tension(i, sum);
+        const double now =
+          solid.laws.tension(i, sum_over_bonds(solid.rows, i, [&](const auto &bond) {
+                               return solid.kinematics.extension_moment(u.begin(), i, bond);
+                             }));
         change.local_element(i) = now - tau.local_element(i);
         tau.local_element(i)    = now;
       }
@@ -532,10 +459,12 @@ namespace PeriDeal
       {
         Tensor<1, dim> force;
         solid.rows.for_each_stored(i, [&](const auto &bond) {
-          double size = bond.spring * solid.kinematics.extension_moment(u.begin(), i, bond);
-          if (solid.laws.volumetric)
-            size += tau.local_element(i) + tau.local_element(bond.neighbor);
-          force += size * bond.moment;
+          const double of_both = tau.local_element(i) + tau.local_element(bond.neighbor);
+          force +=
+            LinearPeridynamicSolid::force(bond.spring,
+                                          solid.kinematics.extension_moment(u.begin(), i, bond),
+                                          solid.laws.volumetric ? of_both : 0.) *
+            bond.moment;
         });
         for (unsigned int d = 0; d < dim; ++d)
           r.local_element(dim * i + d) = scratch.local_element(dim * i + d) + force[d];
@@ -573,16 +502,16 @@ namespace PeriDeal
     const std::vector<unsigned int> &losing = breakage.nodes_at_work();
     const double n_losing = Utilities::MPI::sum(1. * losing.size(), nodes.communicator());
     double       hinder   = n_losing > 0.1 * nodes.n_global() ? 1. : 0.;
-    if (nonlinear() ? solid.beyond != nullptr : !solid.rows.has_lattice() || solid.thermal.any())
+    if (nonlinear() ? solid.ends.images != nullptr :
+                      !solid.sums.has_lattice() || solid.thermal.any())
       hinder = 1.;
-    if (solid.beyond)
-      for (const unsigned int i : losing)
-        {
-          if (solid.beyond->images().is_followed(i)) // their rows are not all that pulls at them
-            hinder = 1.;
-          // tau of these changes what their images bear
-          solid.beyond->for_each_of(i, [&](const auto &) { hinder = 1.; });
-        }
+    for (const unsigned int i : losing)
+      {
+        if (solid.ends.images && solid.ends.images->is_followed(i))
+          hinder = 1.; // their rows are not all that pulls at them
+        // tau of these changes what their images bear
+        solid.rows.for_each_beyond(i, [&](const auto &) { hinder = 1.; });
+      }
     if (Utilities::MPI::max(hinder, nodes.communicator()) > 0.)
       {
         this->unbalanced(r, u, t);
@@ -624,7 +553,7 @@ namespace PeriDeal
   void StateOperator<dim>::apply_change(const ChangeSet<dim> &change, const bool loaded)
   {
     if (!change.damage)
-      breakage.apply_change(change, loaded);
+      solid.apply_change(change, loaded);
     follow_bonds(change.damage ? &change.nodes : nullptr);
   }
 
@@ -632,7 +561,7 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *of_nodes)
   {
-    if (of_nodes && !solid.beyond)
+    if (of_nodes && !solid.ends.images)
       mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
     else if (!of_nodes || !this->forgoes_diagonal)
       find_stiffness_diagonal(solid, stiffness_diagonal);

@@ -50,13 +50,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  Tensor<1, dim> surface_stiffness(const Families<dim>        &families,
-                                   const NodeLaws<dim>        &laws,
-                                   const SolidRows<dim>       &rows,
-                                   const FictitiousBonds<dim> *beyond)
+  Tensor<1, dim> surface_stiffness(const SolidBonds<dim> &bonds)
   {
-    const Nodes<dim> &nodes = families.nodes();
-    EvenMoments<dim>  complete;
+    const Families<dim> &families = bonds.families;
+    const NodeLaws<dim> &laws     = bonds.laws;
+    const Nodes<dim>    &nodes    = families.nodes();
+    EvenMoments<dim>     complete;
     if (nodes.lattice())
       for (const FamilyMember<dim> &member : families.weights().members())
         {
@@ -73,15 +72,10 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         EvenMoments<dim> own;
-        rows.for_each(i, [&](const auto &bond) {
-          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+        bonds.rows.for_each(i, [&](const auto &bond) {
+          const Tensor<1, dim> xi = bonds.ends.vector(i, bond.neighbor);
           own.add(xi, bond.moment * xi);
         });
-        if (beyond != nullptr)
-          beyond->for_each_of(i, [&](const auto &bond) {
-            const Tensor<1, dim> xi = beyond->bond_vector(bond);
-            own.add(xi, bond.moment * xi);
-          });
         StateLaw law = laws[i];
         if (!laws.volumetric)
           law.volumetric = 0.;
@@ -99,13 +93,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                   \
-  template Tensor<1, dim> surface_stiffness(const Families<dim> &,  \
-                                            const NodeLaws<dim> &,  \
-                                            const SolidRows<dim> &, \
-                                            const FictitiousBonds<dim> *);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template Tensor<1, 1> surface_stiffness(const SolidBonds<1> &);
+  template Tensor<1, 2> surface_stiffness(const SolidBonds<2> &);
+  template Tensor<1, 3> surface_stiffness(const SolidBonds<3> &);
 } // namespace PeriDeal

@@ -27,8 +27,7 @@ namespace PeriDeal
    *   D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2.
    * q stays that of the body before.
    *
-   * Which bonds between nodes are broken, or cut by cracks as they grow, and since when stands here
-   * (broken_state()), of those to fictitious nodes in FictitiousBonds.
+   * Which bonds are broken, and since when, stands in BondTable.
    */
   template <int dim>
   class BondBreaking
@@ -61,27 +60,15 @@ namespace PeriDeal
     /** As ElasticOperator::stretch_over_critical(). Collective. */
     double stretch_over_critical(const Vector &u);
 
-    /**
-     * What cracks cut as they grow is marked, too. Collective. Throws UserError.
-     * @param marked the change has been loaded with the state of the bonds
-     */
-    void apply_change(const ChangeSet<dim> &change, const bool marked)
+    typename BondTable<dim>::Count n_marks() const
     {
-      bonds.apply_change(change, state, marked);
+      return {bonds.rows.body.state.n_marks(), bonds.rows.beyond.state.n_marks()};
     }
 
     /** Energy that what the bonds held has released beside. */
     void add_released(const double energy)
     {
       so_far.released += energy;
-    }
-
-    /** How many bonds are not whole any more, inside and beyond; those at the start apart. */
-    using Count = std::array<std::size_t, 2>;
-
-    Count n_marks() const
-    {
-      return {state.n_marks(), bonds.beyond ? bonds.beyond->n_marks() : 0};
     }
 
     /**
@@ -92,10 +79,10 @@ namespace PeriDeal
      * @param at_first what is to be done to a body that is loaded as it was then, if it is another
      *                 now
      */
-    void exchange(Archive                     &archive,
-                  const NodeKeys              &keys,
-                  Count                       &n_first,
-                  const std::function<void()> &at_first);
+    void exchange(Archive                        &archive,
+                  const NodeKeys                 &keys,
+                  typename BondTable<dim>::Count &n_first,
+                  const std::function<void()>    &at_first);
 
     /** As ElasticOperator::broken_since(). */
     std::vector<NodePair> broken_since(std::size_t &n_known) const;
@@ -104,12 +91,6 @@ namespace PeriDeal
     const BreakHistory *history() const
     {
       return breaks ? &so_far : nullptr;
-    }
-
-    /** Of the stored bonds. */
-    const BondState &broken_state() const
-    {
-      return state;
     }
 
     /** Of the owned nodes and their ghosts; empty where bonds do not break. */
@@ -133,22 +114,22 @@ namespace PeriDeal
 
     std::size_t memory_consumption() const
     {
-      return state.memory_consumption() + critical.memory_consumption() +
-             loaded_side.capacity() * sizeof(unsigned int) +
+      return critical.memory_consumption() + loaded_side.capacity() * sizeof(unsigned int) +
              (screen ? screen->memory_consumption() : 0);
     }
 
   private:
     void                      find_critical_stretches();
     void                      watch_limits(); // of full kinematics
-    std::pair<double, double> stretch_and_limit(
-      const double                        *u,
-      const unsigned int                   i,
-      const typename SolidRows<dim>::Bond &bond) const; // both times W x^2
-    void find_inside(const double *u);
-    void find_overstretched(const Vector &u, const double share);
-    void find_losing();
-    void keep_places(); // of what is overstretched
+    std::pair<double, double> stretch_and_limit(const double         *u,
+                                                const unsigned int    i,
+                                                const SolidBond<dim> &bond) const; // times W x^2
+    void                      find_inside(const double *u);
+    void                      find_beyond(const double *u);
+    void                      find_overstretched(const Vector &u, const double share);
+    void                      find_losing();
+    void                      keep_places(); // of what is overstretched
+    void                      break_dependent(const unsigned int node, const double t);
 
     /** Returns the number of ends of bonds. */
     unsigned long long break_overstretched(const double t);
@@ -157,11 +138,12 @@ namespace PeriDeal
     const BodyParameters<dim> &body;
     const bool                 breaks, changes; // some bond may break, or be cut by a growing crack
     BondStrengths<dim>         critical;
-    BondState                  state;
     BreakHistory               so_far;
-    std::vector<unsigned int>  loaded_side;     // which in `Traction` is within a horizon of these
-    Overstretched              inside, beyond;  // what is to break next, inside by stored bonds
-    std::vector<unsigned int>  losing;          // nodes of these, in ascending order
-    std::unique_ptr<StretchScreen<dim>> screen; // null: all bonds are looked at
+    std::vector<unsigned int>  loaded_side; // which in `Traction` is within a horizon of these
+    // What is to break next: numbers of bonds, and how far each is stretched over the critical
+    // stretch; and the nodes that lose them, in ascending order.
+    std::vector<std::pair<std::size_t, double>> overstretched;
+    std::vector<unsigned int>                   losing;
+    std::unique_ptr<StretchScreen<dim>>         screen; // null: all bonds are looked at
   };
 } // namespace PeriDeal

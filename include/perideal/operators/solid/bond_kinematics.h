@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include <perideal/bonds/bond_state.h>
-#include <perideal/operators/solid/solid_rows.h>
+#include <perideal/operators/solid/bond_table.h>
+#include <perideal/operators/solid/deformed_rows.h>
 #include <perideal/operators/solid/thermal_strains.h>
 
 #include <vector>
@@ -12,8 +12,8 @@
 namespace PeriDeal
 {
   /**
-   * How far bonds between nodes of the body are stretched by displacements: e = M . (u_j - u_i) - s
-   * x, s the mean thermal strain of both ends, or with full kinematics Y = xi + u_j - u_i and e =
+   * How far bonds are stretched by displacements: e = M . (u_j - u_i) - s x, s the mean thermal
+   * strain of both ends, or with full kinematics Y = xi + u_j - u_i and e =
    * |Y| - x - s x. The force then acts along Y/|Y|, and the tangent of linearize() has W x Y/|Y| in
    * the place of W xi, and across the bond the stiffness force/|Y|.
    *
@@ -23,11 +23,12 @@ namespace PeriDeal
   class BondKinematics
   {
   public:
-    using Bond = typename SolidRows<dim>::Bond;
+    using Bond = SolidBond<dim>;
 
     /** All have to outlive this object. */
     BondKinematics(const Families<dim>  &families,
-                   SolidRows<dim>       &rows,
+                   const BondEnds<dim>  &ends,
+                   BondTable<dim>       &bonds,
                    const ThermalStrains &thermal,
                    const bool            full);
 
@@ -42,47 +43,57 @@ namespace PeriDeal
       return full || thermal.any();
     }
 
-    /** To be called once before the other functions, with the rows of the undeformed body. */
-    void keep_lengths();
+    /** To be called once before the other functions, when bonds have their springs. */
+    void take_positions();
+
+    /** Thermal strains are others. */
+    void take_thermal_strains();
 
     /** W x e of a bond of an owned node, thermal extension taken off. */
     double extension_moment(const double *u, const unsigned int i, const Bond &bond) const
     {
       if (is_strained())
         return strained_extension_moment(u, i, bond);
-      double product = 0.;
+      const double *const far     = ends.value(u, bond.neighbor);
+      double              product = 0.;
       for (unsigned int d = 0; d < dim; ++d)
-        product += bond.moment[d] * (u[dim * bond.neighbor + d] - u[dim * i + d]);
+        product += bond.moment[d] * (far[d] - u[dim * i + d]);
       return product;
     }
 
-    /** W x, with full kinematics. */
+    /** W x. @param xi the bond */
+    double length(const Bond &bond, const dealii::Tensor<1, dim> &xi) const
+    {
+      return full ? length(bond) : bond.moment * xi / xi.norm();
+    }
+
+    /** The same, with full kinematics. */
     double length(const Bond &bond) const
     {
-      return lengths[bond.number];
+      return bonds.rows_of(bond.number).lengths[bonds.place(bond.number)];
     }
 
     /** Force over length, with full kinematics, at the last linearize(). */
     double stiffness_across(const Bond &bond) const
     {
-      return across[bond.number];
+      return bonds.rows_of(bond.number).across[bonds.place(bond.number)];
     }
 
     /** tau = c theta/q of the owned nodes, from extensions. */
     void find_tensions(double *tau, const double *u, const NodeLaws<dim> &laws) const;
 
-    /** y = -F of the deformed body, with tau = c theta/q. */
+    /** y = -F of the deformed or warmer body, with tau = c theta/q. Collective. */
     void find_forces(Vector &y, const double *u, const Vector &tau) const;
 
-    /** The same of single nodes, with full kinematics. y are those of the owned nodes. */
+    /** The same of single nodes in the body, with full kinematics. y are those of owned nodes. */
     void find_forces_of(const std::vector<unsigned int> &nodes,
                         double                          *y,
                         const double                    *u,
                         const Vector                    &tau) const;
 
     /**
-     * Sum of (W x e)^2 spring/4 over the bonds of owned nodes: of their energy what is none of
-     * dilatations. Not collective.
+     * What bonds of owned nodes store by their extensions, those that two nodes have in halves. Not
+     * collective.
      */
     double energy_of_extensions(const double *u) const;
 
@@ -98,22 +109,13 @@ namespace PeriDeal
      */
     const unsigned char *exceeding(const double *u) const;
 
-    /** Thermal strains are others. */
-    void forget_exceeding()
-    {
-      seen = false;
-    }
-
     void linearize(const double *u, const Vector &tau);
 
-    /** Adds to y what stiffness across bonds does. */
-    void add_geometric_forces(Vector &y, const double *x, const BondState &state) const;
+    /** Adds to y what stiffness across bonds does. Collective. */
+    void add_geometric_forces(Vector &y, const double *x) const;
 
-    /** Of |Y|/x - 1, either sign, over unbroken bonds. Collective. */
+    /** Of |Y|/x - 1, either sign, over unbroken bonds in the body. Collective. */
     double largest_stretch(const double *u) const;
-
-    /** Let a bond bear nothing any more. */
-    void release(const std::size_t number);
 
     std::size_t memory_consumption() const;
 
@@ -121,16 +123,28 @@ namespace PeriDeal
     void         take(const double *u, const Vector *tau) const;
     DeformedRows all_rows() const;
     double strained_extension_moment(const double *u, const unsigned int i, const Bond &bond) const;
-    dealii::Tensor<1, dim> deformed_bond(const double      *u,
-                                         const unsigned int i,
-                                         const unsigned int j) const;
+    double thermal_strain(const unsigned int i, const Bond &bond) const;
+
+    template <typename Visit>
+    void visit_beyond(const Visit &visit) const
+    {
+      for (const unsigned int i : bonds.beyond.nodes)
+        bonds.for_each_beyond(i, [&](const Bond &bond) { visit(i, bond); });
+    }
+
+    /** Take a force of a bond to a fictitious node from y, and pull at that node. */
+    void subtract(Vector                       &y,
+                  const unsigned int            i,
+                  const unsigned int            j,
+                  const dealii::Tensor<1, dim> &force) const;
 
     const Families<dim>  &families;
-    SolidRows<dim>       &rows;
+    const BondEnds<dim>  &ends;
+    BondTable<dim>       &bonds;
     const ThermalStrains &thermal;
     const bool            full;
-    std::vector<double>   lengths, across; // of the stored bonds
-    std::vector<double>   limits;          // of e/x; empty: none
+    std::vector<double>   strains_beyond; // of the bonds to fictitious nodes; empty: none
+    std::vector<double>   limits;         // of e/x; empty: none
 
     // Of owned nodes and ghosts, with full kinematics, for the loops over rows.
     mutable std::vector<DeformedRows::Node> nodes;

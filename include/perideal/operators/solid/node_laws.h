@@ -4,10 +4,11 @@
 #pragma once
 
 #include <perideal/base/types.h>
-#include <perideal/laws/elasticity.h>
-#include <perideal/mesh/nodes.h>
+#include <perideal/bonds/families.h>
+#include <perideal/laws/linear_peridynamic_solid.h>
 #include <perideal/scene/body_parameters.h>
 
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -31,16 +32,26 @@ namespace PeriDeal
     /** b_i/q_i. */
     double stiffness(const unsigned int i) const
     {
-      return (*this)[i].extension / weighted.local_element(i);
+      return LinearPeridynamicSolid::stiffness((*this)[i], weighted.local_element(i));
     }
 
     /** c_i theta_i/q_i, of the sum of W x e over the family. */
     double tension(const unsigned int i, const double sum) const
     {
-      const StateLaw &law = (*this)[i];
-      const double    q   = weighted.local_element(i);
-      return law.volumetric * law.dilatation * sum / (q * q * nodes.volume(i));
+      return LinearPeridynamicSolid::tension((*this)[i],
+                                             weighted.local_element(i),
+                                             nodes.volume(i),
+                                             sum);
     }
+
+    /**
+     * q of an owned node with this family; @p message is set, if it is empty, where its bonds do
+     * not hold it.
+     */
+    double weight_of(const Families<dim>                               &families,
+                     const unsigned int                                 i,
+                     const std::vector<typename Families<dim>::Member> &family,
+                     std::string                                       &message) const;
 
     /** Of several laws that of most nodes, if it is the softest or the stiffest one. Collective. */
     StateLaw reference() const;
@@ -56,6 +67,7 @@ namespace PeriDeal
 
   private:
     const Nodes<dim>     &nodes;
+    const double          horizon;
     std::vector<StateLaw> laws; // owned and ghosts; a single one: all have it
   };
 } // namespace PeriDeal

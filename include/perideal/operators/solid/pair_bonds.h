@@ -24,8 +24,6 @@ namespace PeriDeal
   class PairBonds : public ZoneBonds<dim>
   {
   public:
-    using typename ZoneBonds<dim>::Bond;
-
     /** Both have to outlive this object. */
     PairBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds);
 
@@ -36,28 +34,7 @@ namespace PeriDeal
     /** Owned ones of the ends themselves. */
     std::vector<unsigned int> rows_at(const std::vector<unsigned int> &ends) const override;
 
-    void                   add_forces_of(const std::vector<unsigned int> &of_nodes,
-                                         const double                     multiple,
-                                         Vector                          &y,
-                                         const Vector                    &u) const override;
-    dealii::Tensor<1, dim> diagonal_of(const unsigned int node) const override;
-    void                   add_row_sums(std::vector<double> &sums) const override;
-
-    /** Half of each bond's for each end. */
-    double energy(const Vector                    &u,
-                  const std::vector<unsigned int> &of_nodes,
-                  const std::vector<double>       &thermal) const override;
-    double add_thermal(Vector                          &loads,
-                       const std::vector<unsigned int> &of_nodes,
-                       const std::vector<double>       &thermal,
-                       const double                     multiple) const override;
-
   private:
-    double spring(const unsigned int, const Bond &bond) const override
-    {
-      return bond.strength;
-    }
-
     const Coupling<dim>     &coupling;
     const LatticeBonds<dim> &of_lattice;
   };

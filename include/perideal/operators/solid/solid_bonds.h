@@ -4,10 +4,10 @@
 #pragma once
 
 #include <perideal/operators/solid/bond_kinematics.h>
-#include <perideal/operators/solid/fictitious_bonds.h>
+#include <perideal/operators/solid/solid_sums.h>
 
 #include <limits>
-#include <memory>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -30,24 +30,37 @@ namespace PeriDeal
      * Let the cracks be those of a later time: bonds that they cut bear nothing any more, and q and
      * the springs that follow from it are those of the bonds that are left, as if the cracks had
      * been there from the start. Collective. Throws UserError: nodes without hold.
-     * @param state  of the stored bonds
-     * @param marked it has what is cut already, and bonds have been released
+     * @param marked bonds that it cuts have been marked already
      */
-    void apply_change(const ChangeSet<dim> &change, BondState &state, const bool marked);
+    void apply_change(const ChangeSet<dim> &change, const bool marked);
 
     Families<dim>       families;
     NodeLaws<dim>       laws;
     ThermalStrains      thermal;
-    SolidRows<dim>      rows;
+    BondEnds<dim>       ends;
+    BondTable<dim>      rows;
+    SolidSums<dim>      sums;
     BondKinematics<dim> kinematics;
     // Of a mesh: least thickness of the body behind free sides, where it is thin (thin_on_mesh()).
-    double                                thinnest = std::numeric_limits<double>::infinity();
-    std::unique_ptr<FictitiousBonds<dim>> beyond; // or none, on all processes
+    double thinnest = std::numeric_limits<double>::infinity();
+
+    /** What `Surface correction = moments` has found. */
+    struct Corrections
+    {
+      unsigned long long n_left = 0;  // nodes of all processes that are as they were
+      double             gap    = 0.; // SurfaceFactors
+    } corrections;
 
   private:
-    bool       has_parted(const unsigned int i, const BondState &state) const; // since the start
-    void       part(const unsigned int i, const double t, BondState &state);
-    void       renew_weights(const std::vector<unsigned int> &of_nodes, const BondState &state);
+    void complete_families(const BodyParameters<dim> &body);
+    void correct_surface(const BodyParameters<dim> &body);
+    void part(const unsigned int i, const double t);
+    bool has_parted(const unsigned int i) const; // since the start
+
+    /** q with the cracks as they are, broken bonds included. */
+    double     weight_left(const unsigned int i, std::string &message) const;
+    void       renew_springs(const unsigned int i);
+    void       renew_weights(const std::vector<unsigned int> &of_nodes);
     const bool weights_follow; // q is that of the family, and not of a complete one
   };
 } // namespace PeriDeal

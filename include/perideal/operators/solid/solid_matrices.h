@@ -30,14 +30,24 @@ namespace PeriDeal
 
 
   /**
-   * K of these bonds without conditions; rows hold some (4m)^dim nodes (bond-based: (2m)^dim). @p
-   * state is that of the stored bonds, @p unknowns the layout of displacements. Collective.
+   * By node: c d/(q^2 V), whole, times the sum of the lengths of what theta takes displacements by,
+   * an upper bound of it. Ghosts are up to date. Collective.
    */
   template <int dim>
-  void assemble_matrix(const SolidBonds<dim>                     &bonds,
-                       const BondState                           &state,
-                       const dealii::Utilities::MPI::Partitioner &unknowns,
-                       dealii::TrilinosWrappers::SparseMatrix    &matrix);
+  Vector find_sums_of_dilatations(const SolidBonds<dim> &bonds);
+
+
+  /**
+   * Sums over the rows of |K|, with the norms of its blocks, by node: twice the springs, and for
+   * the dilatations |c_ij| summed over both of their ends. Collective.
+   *
+   * @param of_dilatations of find_sums_of_dilatations(), or 0: without them
+   * @param of_tangent     with the stiffness across bonds
+   */
+  template <int dim>
+  Vector find_row_sums(const SolidBonds<dim> &bonds,
+                       const Vector          &of_dilatations,
+                       const bool             of_tangent);
 
 
   /**
@@ -47,7 +57,6 @@ namespace PeriDeal
    */
   template <int dim>
   void make_surrogate(const SolidBonds<dim>                  &bonds,
-                      const BondState                        &state,
                       const BodyParameters<dim>              &body,
                       const Vector                           &diagonal,
                       const Vector                           &held,

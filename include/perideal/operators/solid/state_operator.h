@@ -26,7 +26,7 @@ namespace PeriDeal
    * with d, c, b the factors dilatation, volumetric and extension of StateLaw. The prefactor of
    * omega drops out. `Surface correction` multiplies W by a bond's factor a in theta and in the
    * forces from it, by s in those of e, and changes q (surface_factors.h), or lets families go on
-   * beyond the sides (FictitiousBonds). An application takes two passes over the bonds, the
+   * beyond the sides (BondTable). An application takes two passes over the bonds, the
    * dilatations first.
    *
    * With full kinematics Y = xi + u_j - u_i, e = |Y| - x - s x, and the force acts along Y/|Y|; a
@@ -170,11 +170,11 @@ namespace PeriDeal
 
     bool holds(const CellCorner<dim> &corner) const; // no bond of its node has broken
 
-    SolidBonds<dim>                           solid;
-    SolidLoads<dim>                           loads;
-    BondBreaking<dim>                         breakage;
-    mutable typename BondBreaking<dim>::Count marks_of_surrogate{};
-    mutable Vector                            tau; // tau_i = c_i theta_i/q_i; 0 without dilatations
-    mutable std::vector<CellCorner<dim>>      corners; // once they have been asked for
+    SolidBonds<dim>                        solid;
+    SolidLoads<dim>                        loads;
+    BondBreaking<dim>                      breakage;
+    mutable typename BondTable<dim>::Count marks_of_surrogate{};
+    mutable Vector                         tau; // tau_i = c_i theta_i/q_i; 0 without dilatations
+    mutable std::vector<CellCorner<dim>>   corners; // once they have been asked for
   };
 } // namespace PeriDeal

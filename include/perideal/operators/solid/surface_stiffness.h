@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/solid/fictitious_bonds.h>
+#include <perideal/operators/solid/solid_bonds.h>
 
 namespace PeriDeal
 {
@@ -11,11 +11,7 @@ namespace PeriDeal
    * By how much families that end at surfaces make a body stiffer: Young's modulus along each axis,
    * over that of complete families, less 1. That of the mean over all nodes of what uniform strains
    * store, which the body as a whole comes near to when it is slender. Collective.
-   * @param beyond or null
    */
   template <int dim>
-  dealii::Tensor<1, dim> surface_stiffness(const Families<dim>        &families,
-                                           const NodeLaws<dim>        &laws,
-                                           const SolidRows<dim>       &rows,
-                                           const FictitiousBonds<dim> *beyond);
+  dealii::Tensor<1, dim> surface_stiffness(const SolidBonds<dim> &bonds);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/laws/linear_peridynamic_solid.h>
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/parts/crack_side_factors.h>
 
@@ -20,8 +21,14 @@ namespace PeriDeal
 {
   /**
    * The bonds of a coupled solid on a lattice as a list beside the matrix of the elements, so that
-   * the matrix stays where bonds appear and break. What forces they make of u, and
-   * with it K, is that of PairBonds (exchange) or FamilyBonds (blending).
+   * the matrix stays where bonds appear and break. They are the linear peridynamic solid, by the
+   * energies of nodes
+   *
+   *   E_i = k_i/2 sum_j W_ij c_ij^2/x^2 + a_i/2 (sum_j W_ij c_ij)^2,
+   *   c_ij = xi . (u_j - u_i) - s x^2,
+   *
+   * with k and a of FamilyBonds (blending), or each bond by itself: k = x^2/2, a = 0 (PairBonds,
+   * exchange). An application takes two passes over the rows, the dilatations first.
    *
    * Each owned node that bonds act on has a row of them, in the order of their offsets; bonds of
    * two processes stand in rows of both. Not collective unless stated.
@@ -68,36 +75,49 @@ namespace PeriDeal
     }
 
     /** Add a multiple of K u in the rows of some nodes; ghosts as above. Collective. */
-    virtual void add_forces_of(const std::vector<unsigned int> &of_nodes,
-                               const double                     multiple,
-                               Vector                          &y,
-                               const Vector                    &u) const = 0;
+    void add_forces_of(const std::vector<unsigned int> &of_nodes,
+                       const double                     multiple,
+                       Vector                          &y,
+                       const Vector                    &u) const
+    {
+      add_forces_of(of_nodes, multiple, y, u.begin(), nullptr);
+    }
 
     /** What an owned node has of the diagonal of K. */
-    virtual dealii::Tensor<1, dim> diagonal_of(const unsigned int node) const = 0;
+    dealii::Tensor<1, dim> diagonal_of(const unsigned int node) const;
 
     /** Add the diagonal of K to a vector of unknowns. */
     void add_diagonal(Vector &diagonal) const;
 
     /** Add the sums over the absolute values of rows of K, or more. Collective. */
-    virtual void add_row_sums(std::vector<double> &sums) const = 0;
+    void add_row_sums(std::vector<double> &sums) const;
 
     /** Add to a matrix what whole bonds between vertices of a cell have of K. Not compressed. */
     void add_between_vertices(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
-    /** The energy of what these nodes have of K; over all nodes, all of it. Ghosts as above. */
-    virtual double energy(const Vector                    &u,
-                          const std::vector<unsigned int> &of_nodes,
-                          const std::vector<double>       &thermal) const = 0;
+    /**
+     * Sum of E_i over these nodes; over all nodes, all of it. Ghosts as above. @param thermal strains
+     * of nodes known here; empty: none
+     */
+    double energy(const Vector                    &u,
+                  const std::vector<unsigned int> &of_nodes,
+                  const std::vector<double>       &thermal) const
+    {
+      return energy(u.begin(), of_nodes, thermal.empty() ? nullptr : thermal.data());
+    }
 
     /**
      * Add the loads of thermal strains at nodes, means of both ends, in the rows of these nodes.
      * Returns the energy of a body that is held everywhere. Collective.
      */
-    virtual double add_thermal(Vector                          &loads,
-                               const std::vector<unsigned int> &of_nodes,
-                               const std::vector<double>       &thermal,
-                               const double                     multiple) const = 0;
+    double add_thermal(Vector                          &loads,
+                       const std::vector<unsigned int> &of_nodes,
+                       const std::vector<double>       &thermal,
+                       const double                     multiple) const
+    {
+      add_forces_of(of_nodes, -multiple, loads, nullptr, thermal.data());
+      return multiple * energy(nullptr, of_nodes, thermal.data());
+    }
 
     /** Owned nodes with a row. */
     const std::vector<unsigned int> &nodes() const
@@ -123,21 +143,18 @@ namespace PeriDeal
     /** Of this process: each whole bond is counted half in a row. */
     double n_whole() const;
 
-    virtual std::size_t memory_consumption() const;
+    std::size_t memory_consumption() const;
 
   protected:
     /** @param bonds_of_zone has to outlive this object, which has no bonds yet. */
     explicit ZoneBonds(const Families<dim> &bonds_of_zone);
 
-    /** The factor of xi xi^T in K by a bond alone. */
-    virtual double spring(const unsigned int node, const Bond &bond) const = 0;
-
     void set_row(const unsigned int                                     node,
                  const std::vector<typename DiffusionBonds<dim>::Bond> &list);
     void finish_rows();
 
-    const Families<dim>                &families;
-    std::vector<dealii::Tensor<1, dim>> vectors;
+    const Families<dim> &families;
+    Vector               stiffness, dilatation; // k, a, with ghosts; empty: bonds by themselves
 
   private:
     struct Row
@@ -146,16 +163,43 @@ namespace PeriDeal
       unsigned int n     = 0;
     };
 
-    unsigned int vector_between(const unsigned int node, const unsigned int neighbor) const;
-    void         pack();
+    /** k_i/x^2 + k_j/x^2. */
+    double spring(const unsigned int i, const Bond &bond) const
+    {
+      return stiffness.size() == 0 ?
+               1. :
+               LinearPeridynamicSolid::spring(stiffness.local_element(i) +
+                                                stiffness.local_element(bond.neighbor),
+                                              vectors[bond.vector].norm_square());
+    }
 
-    std::array<int, dim>      reach{};             // offsets in each direction
-    std::vector<bool>         is_between_vertices; // by number of the vector
-    std::vector<Bond>         bonds;
-    std::vector<Row>          rows;           // of owned nodes
-    std::vector<unsigned int> with_rows;      // ascending
-    std::size_t               unused = 0;     // of the bonds, in rows that were taken anew
-    bool                      more   = false; // or fewer nodes have rows than with_rows says
+    /** c_ij. @param u null: at rest @param thermal null: without thermal strains */
+    double change(const unsigned int i,
+                  const Bond        &bond,
+                  const double      *u,
+                  const double      *thermal) const;
+
+    /** Whether nodes have any a_i sum_j W_ij c_ij, which is found. */
+    bool find_tensions(const double *u, const double *thermal) const;
+
+    void   add_forces_of(const std::vector<unsigned int> &of_nodes,
+                         const double                     multiple,
+                         Vector                          &y,
+                         const double                    *u,
+                         const double                    *thermal) const;
+    double energy(const double                    *u,
+                  const std::vector<unsigned int> &of_nodes,
+                  const double                    *thermal) const;
+
+    std::vector<dealii::Tensor<1, dim>> vectors;
+    mutable Vector                      tensions;            // a_i sum_j W_ij c_ij
+    std::array<int, dim>                reach{};             // offsets in each direction
+    std::vector<bool>                   is_between_vertices; // by number of the vector
+    std::vector<Bond>                   bonds;
+    std::vector<Row>                    rows;       // of owned nodes
+    std::vector<unsigned int>           with_rows;  // ascending
+    std::size_t                         unused = 0; // of the bonds, in rows that were taken anew
+    bool more = false;                              // or fewer nodes have rows than with_rows says
   };
 
 

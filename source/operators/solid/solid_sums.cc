@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/operators/solid/solid_sums.h>
+
+#include "../lattice/state_lattice.h"
+#include "change_along.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  SolidSums<dim>::SolidSums(const Families<dim>  &families,
+                            const BondEnds<dim>  &ends,
+                            const BondTable<dim> &bonds,
+                            const NodeLaws<dim>  &laws)
+    : families(families)
+    , ends(ends)
+    , bonds(bonds)
+    , laws(laws)
+  {}
+
+
+  template <int dim>
+  SolidSums<dim>::~SolidSums() = default;
+
+
+  template <int dim>
+  void SolidSums<dim>::take_lattice()
+  {
+    if (bonds.body.units.empty())
+      return;
+    const StateLaw      law = laws.reference();
+    const double        q   = bonds.complete_weighted;
+    LatticeCoefficients coefficients;
+    coefficients.stiffness  = law.extension / q;
+    coefficients.dilatation = laws.volumetric ? law.volumetric * law.dilatation / (q * q) : 0.;
+    for (unsigned int i = 0; i < families.nodes().n_local(); ++i)
+      {
+        const double own = laws.weighted.local_element(i);
+        coefficients.excesses.push_back(0.5 * (laws.stiffness(i) / coefficients.stiffness - 1.));
+        if (laws.volumetric && i < families.nodes().n_owned())
+          coefficients.dilatations.push_back(laws[i].volumetric * laws[i].dilatation / (own * own));
+      }
+    std::vector<bool> computed;
+    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+      computed.push_back(bonds.is_on_lattice(i));
+    lattice = std::make_unique<StateLattice<dim>>(families, coefficients, computed);
+  }
+
+
+  template <int dim>
+  bool SolidSums<dim>::is_regular(const unsigned int i) const
+  {
+    return lattice && bonds.is_on_lattice(i) && lattice->is_regular(i);
+  }
+
+
+  template <int dim>
+  template <typename Visit>
+  void SolidSums<dim>::visit_parts(const BondRows<dim> &rows,
+                                   const std::size_t    row,
+                                   const Visit         &visit) const
+  {
+    const std::size_t begin = rows.starts[row], end = rows.starts[row + 1];
+    if (!rows.is_packed())
+      {
+        for (std::size_t k = begin; k < end; ++k)
+          visit(rows.neighbors[k], rows.moments[k], rows.springs[k], 1.);
+        return;
+      }
+    const unsigned int i = rows.nodes[row];
+    for (std::size_t k = begin; k < end; ++k)
+      if (rows.codes[k] != BondCode::gone)
+        {
+          const UnitBond<dim> &unit = rows.units[BondCode::number(rows.codes[k])];
+          const unsigned int   j    = rows.neighbors[k];
+          // Of spring and W x e volumes drop out.
+          visit(j,
+                unit.moment,
+                bonds.stiffnesses(i, j) / unit.weight,
+                bonds.volumes_of(rows, i, k));
+        }
+  }
+
+
+  template <int dim>
+  void SolidSums<dim>::find_tensions(double *tau, const double *u) const
+  {
+    if (lattice)
+      lattice->dilatation_forces(tau, u);
+    ends.find(u);
+    const auto sum_of = [&](const BondRows<dim> &rows, const std::size_t row, const auto &value) {
+      double              sum = 0.;
+      const double *const own = u + dim * rows.nodes[row];
+      visit_parts(rows,
+                  row,
+                  [&](const unsigned int j, const Tensor<1, dim> &p, const double, const double w) {
+                    sum += w * change_along(p, own, value(j));
+                  });
+      return laws.tension(rows.nodes[row], sum);
+    };
+    for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
+      tau[bonds.body.nodes[row]] =
+        sum_of(bonds.body, row, [u](const unsigned int j) { return u + dim * j; });
+    for (std::size_t row = 0; row < bonds.beyond.nodes.size(); ++row)
+      tau[bonds.beyond.nodes[row]] +=
+        sum_of(bonds.beyond, row, [&](const unsigned int j) { return ends.value(u, j); });
+  }
+
+
+  template <int dim>
+  void SolidSums<dim>::find_forces(Vector &y, const double *u, const double *tau) const
+  {
+    if (lattice)
+      lattice->forces(y.begin(), u, tau);
+    const auto tension = [tau](const unsigned int i) { return tau != nullptr ? tau[i] : 0.; };
+    for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
+      {
+        const unsigned int i = bonds.body.nodes[row];
+        Tensor<1, dim>     force;
+        visit_parts(
+          bonds.body,
+          row,
+          [&](const unsigned int j, const Tensor<1, dim> &p, const double s, const double w) {
+            const double size =
+              LinearPeridynamicSolid::force(s,
+                                            change_along(p, u + dim * i, u + dim * j),
+                                            tension(i) + tension(j));
+            force += (size * w) * p;
+          });
+        for (unsigned int d = 0; d < dim; ++d)
+          y.local_element(dim * i + d) = -force[d];
+      }
+    if (!ends.images)
+      return;
+    const FictitiousImages<dim> &images = *ends.images;
+    if (tau == nullptr) // else they have been found
+      images.find(u);
+    images.begin_forces();
+    for (std::size_t row = 0; row < bonds.beyond.nodes.size(); ++row)
+      {
+        const unsigned int i = bonds.beyond.nodes[row];
+        Tensor<1, dim>     force;
+        visit_parts(
+          bonds.beyond,
+          row,
+          [&](const unsigned int j, const Tensor<1, dim> &p, const double s, const double w) {
+            const double size = LinearPeridynamicSolid::force(
+              s,
+              change_along(p, u + dim * i, images.value(ends.image(j))),
+              tension(i));
+            const Tensor<1, dim> of_bond = (size * w) * p;
+            force += of_bond;
+            images.pull(ends.image(j), of_bond);
+          });
+        for (unsigned int d = 0; d < dim; ++d)
+          y.local_element(dim * i + d) -= force[d];
+      }
+    images.pass_on(y);
+  }
+
+
+  template <int dim>
+  std::size_t SolidSums<dim>::memory_consumption() const
+  {
+    return lattice ? lattice->memory_consumption() : 0;
+  }
+
+
+  template class SolidSums<1>;
+  template class SolidSums<2>;
+  template class SolidSums<3>;
+} // namespace PeriDeal
