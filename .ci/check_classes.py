@@ -27,7 +27,7 @@ WIDER = {
     "include/perideal/bonds/stencil_tile.h": {"StencilTile": (0, 19, 0)},
     "include/perideal/mesh/nodes.h": {"Nodes": (32, 14, 0)},
     "include/perideal/operators/coupling/coupling.h": {"Coupling": (23, 0, 21)},
-    "include/perideal/operators/coupling/lattice_bonds.h": {"LatticeBonds": (35, 15, 0)},
+    "include/perideal/operators/coupling/lattice_bonds.h": {"LatticeBonds": (29, 13, 0)},
     "include/perideal/operators/coupling/mesh_exchange.h": {"MeshExchange": (25, 16, 0)},
     "include/perideal/operators/diffusion/bond_operator.h": {"BondOperator": (28, 10, 0)},
     "include/perideal/operators/diffusion/fem_operator.h": {"FEMOperator": (41, 12, 0)},

@@ -37,7 +37,7 @@ def numbers_of(value, path=""):
     elif isinstance(value, list):
         pairs = [(str(number), item) for number, item in enumerate(value)]
     else:
-        return {path: value}
+        return {path: value.replace(SOURCE_DIR, "") if isinstance(value, str) else value}
     found = {}
     for key, item in pairs:
         found.update(numbers_of(item, f"{path}/{key}" if path else key))

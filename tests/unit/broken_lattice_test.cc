@@ -62,7 +62,7 @@ namespace
     std::size_t                n        = 0;
     u.update_ghost_values();
     for (unsigned int i = 0; i < bonds.families.nodes().n_owned(); ++i)
-      bonds.rows.for_each(i, [&](const auto &bond) {
+      bonds.rows.for_each_in_body(i, [&](const auto &bond) {
         const Tensor<1, dim> xi = bonds.families.neighbors().bond_vector(i, bond.neighbor);
         const double         limit =
           (bond.moment * xi) * std::min(critical[i], critical[bond.neighbor]) * (1. + 1e-12);
@@ -171,7 +171,7 @@ namespace
       {
         double largest = -1e300;
         bool   above   = false;
-        bonds.rows.for_each(i, [&](const auto &bond) {
+        bonds.rows.for_each_in_body(i, [&](const auto &bond) {
           const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
           double               e  = 0.;
           for (unsigned int d = 0; d < dim; ++d)

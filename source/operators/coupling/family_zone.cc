@@ -47,22 +47,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool FamilyZone<dim>::parts(const typename NodeWeights<dim>::Cell &cell) const
-  {
-    if (broken.empty())
-      return false;
-    const auto node = [&](const unsigned int v) {
-      return families.nodes().partitioner()->global_to_local(cell->vertex_dof_index(v, 0));
-    };
-    for (unsigned int v = 0; v < cell->n_vertices(); ++v)
-      for (unsigned int w = v + 1; w < cell->n_vertices(); ++w)
-        if (is_broken(node(v), node(w)))
-          return true;
-    return false;
-  }
-
-
-  template <int dim>
   void FamilyZone<dim>::find_joining(const Point<dim> &place, std::vector<Joining> &list) const
   {
     const Lattice<dim> &lattice = *families.nodes().lattice();

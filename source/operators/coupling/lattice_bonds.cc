@@ -71,19 +71,6 @@ namespace PeriDeal
               passages.push_back(passage);
             }
         }
-    for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell; ++v)
-      for (unsigned int w = v + 1; w < GeometryInfo<dim>::vertices_per_cell; ++w)
-        {
-          Site start{}, between{};
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              start[d]   = (v >> d) & 1;
-              between[d] = static_cast<int>((w >> d) & 1) - start[d];
-            }
-          for (unsigned int k = 0; k < offsets.size(); ++k)
-            if (offsets[k].site == between)
-              vertex_pairs.emplace_back(start, k);
-        }
   }
 
 
@@ -309,54 +296,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::size_t LatticeBonds<dim>::number_between(const unsigned int a, const unsigned int b) const
-  {
-    const Site at_a = site_of(a), at_b = site_of(b);
-    Site       forth{}, back{};
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        forth[d] = at_b[d] - at_a[d];
-        back[d]  = -forth[d];
-      }
-    for (const Offset &offset : offsets)
-      if (offset.site == forth || offset.site == back)
-        return number_of(*at(offset.site == forth ? at_a : at_b), offset);
-    return std::numeric_limits<std::size_t>::max();
-  }
-
-
-  template <int dim>
-  void LatticeBonds<dim>::mark_broken(const unsigned int a, const unsigned int b)
-  {
-    if (broken.empty())
-      broken.resize(sites.size() * offsets.size());
-    if (const std::size_t number = number_between(a, b); number < broken.size())
-      broken[number] = true;
-  }
-
-
-  template <int dim>
-  bool LatticeBonds<dim>::is_broken(const unsigned int a, const unsigned int b) const
-  {
-    const std::size_t number = any_broken() ? number_between(a, b) : broken.size();
-    return number < broken.size() && broken[number];
-  }
-
-
-  template <int dim>
-  bool LatticeBonds<dim>::is_parted(const Site &cell) const
-  {
-    if (!any_broken())
-      return false;
-    for (const auto &[start, k] : vertex_pairs)
-      if (const SiteData *data = at(cell + start);
-          data != nullptr && broken[number_of(*data, offsets[k])])
-        return true;
-    return false;
-  }
-
-
-  template <int dim>
   void LatticeBonds<dim>::find_joining(const Point<dim> &place, std::vector<Joining> &list) const
   {
     if (sites.empty())
@@ -414,7 +353,7 @@ namespace PeriDeal
   std::size_t LatticeBonds<dim>::memory_consumption() const
   {
     return families.memory_consumption() + sites.capacity() * sizeof(SiteData) +
-           broken.capacity() / 8 + passages.capacity() * sizeof(Passage);
+           this->memory_of_marks() + passages.capacity() * sizeof(Passage);
   }
 
 

@@ -95,8 +95,7 @@ namespace PeriDeal
   template <int dim, typename Law>
   bool LatticeExchange<dim, Law>::parts_cell(const Cell &cell) const
   {
-    return bonds.any_broken() && bonds.is_of_lattice(cell) &&
-           bonds.is_parted(bonds.families.nodes().lattice()->index(cell->vertex(0)));
+    return bonds.parts(cell);
   }
 
 

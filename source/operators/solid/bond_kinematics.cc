@@ -86,16 +86,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  double BondKinematics<dim>::thermal_strain(const unsigned int i, const Bond &bond) const
-  {
-    if (!ends.is_fictitious(bond.neighbor))
-      return thermal.of_bond(i, bond.neighbor);
-    return strains_beyond.empty() ? 0. : strains_beyond[bonds.place(bond.number)];
-  }
-
-
-  template <int dim>
-  void BondKinematics<dim>::take(const double *u, const Vector *tau) const
+  DeformedRows BondKinematics<dim>::rows_at(const double *u, const Vector *tau) const
   {
     using Node = DeformedRows::Node;
     seen       = false;
@@ -108,12 +99,7 @@ namespace PeriDeal
         if (tau != nullptr)
           to[Node::tau] = tau->local_element(i);
       }
-  }
 
-
-  template <int dim>
-  DeformedRows BondKinematics<dim>::all_rows() const
-  {
     DeformedRows all;
     all.starts    = bonds.body.starts.data();
     all.end       = bonds.body.nodes.size();
@@ -156,7 +142,9 @@ namespace PeriDeal
   {
     const Tensor<1, dim> xi     = ends.vector(i, bond.neighbor);
     const Tensor<1, dim> eta    = ends.change(u, i, bond.neighbor);
-    const double         strain = thermal_strain(i, bond);
+    double               strain = thermal.of_bond(i, ends.origin(bond.neighbor));
+    if (ends.is_fictitious(bond.neighbor))
+      strain = strains_beyond.empty() ? 0. : strains_beyond[bonds.place(bond.number)];
     if (!full)
       return bond.moment * eta - strain * (bond.moment * xi);
     // |Y| - |xi| without the difference of two nearly equal numbers
@@ -180,8 +168,7 @@ namespace PeriDeal
           tau[i] = laws.tension(i, sum_over_bonds(bonds, i, product_at(i)));
         return;
       }
-    take(u, nullptr);
-    sum_extensions<dim>(all_rows(), tau, nullptr);
+    sum_extensions<dim>(rows_at(u, nullptr), tau, nullptr);
     visit_beyond(
       [&](const unsigned int i, const Bond &bond) { tau[i] += extension_moment(u, i, bond); });
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
@@ -203,42 +190,70 @@ namespace PeriDeal
 
 
   template <int dim>
+  Tensor<1, dim> BondKinematics<dim>::direction(const double      *u,
+                                                const unsigned int i,
+                                                const Bond        &bond) const
+  {
+    if (!full)
+      return bond.moment;
+    const Tensor<1, dim> along = ends.vector(i, bond.neighbor) + ends.change(u, i, bond.neighbor);
+    return length(bond) / along.norm() * along;
+  }
+
+
+  template <int dim>
+  double BondKinematics<dim>::force(const double      *u,
+                                    const unsigned int i,
+                                    const Bond        &bond,
+                                    const Vector      &tau) const
+  {
+    const unsigned int j = bond.neighbor;
+    return LinearPeridynamicSolid::force(bond.spring,
+                                         extension_moment(u, i, bond),
+                                         tau.local_element(i) +
+                                           (ends.is_fictitious(j) ? 0. : tau.local_element(j)));
+  }
+
+
+  template <int dim>
+  Tensor<1, dim> BondKinematics<dim>::force_on(const unsigned int i,
+                                               const double      *u,
+                                               const Vector      &tau) const
+  {
+    Tensor<1, dim> sum;
+    bonds.for_each_in_body(i, [&](const Bond &bond) {
+      sum += force(u, i, bond, tau) * direction(u, i, bond);
+    });
+    return sum;
+  }
+
+
+  template <int dim>
   void BondKinematics<dim>::find_forces(Vector &y, const double *u, const Vector &tau) const
   {
-    const auto add = [&](const unsigned int i, const Bond &bond) {
-      const unsigned int j = bond.neighbor;
-      const double       of_both =
-        tau.local_element(i) + (ends.is_fictitious(j) ? 0. : tau.local_element(j));
-      const double size =
-        LinearPeridynamicSolid::force(bond.spring, extension_moment(u, i, bond), of_both);
-      Tensor<1, dim> along = bond.moment;
-      if (full)
-        {
-          along = ends.vector(i, j) + ends.change(u, i, j);
-          along *= length(bond) / along.norm();
-        }
-      subtract(y, i, j, size * along);
-    };
-    if (ends.images)
-      ends.images->begin_forces();
     if (full)
       {
-        take(u, &tau);
-        sum_forces<dim>(all_rows(),
+        sum_forces<dim>(rows_at(u, &tau),
                         limits.empty() ? nullptr : limits.data(),
                         y.begin(),
                         exceeds.data());
         seen = !limits.empty();
       }
     else
-      {
-        y = 0.;
-        for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-          bonds.for_each_in_body(i, [&](const Bond &bond) { add(i, bond); });
-      }
-    visit_beyond(add);
-    if (ends.images)
-      ends.images->pass_on(y);
+      for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+        {
+          const Tensor<1, dim> sum = force_on(i, u, tau);
+          for (unsigned int d = 0; d < dim; ++d)
+            y.local_element(dim * i + d) = -sum[d];
+        }
+    if (!ends.images)
+      return;
+    ends.find(u);
+    ends.images->begin_forces();
+    visit_beyond([&](const unsigned int i, const Bond &bond) {
+      subtract(y, i, bond.neighbor, force(u, i, bond, tau) * direction(u, i, bond));
+    });
+    ends.images->pass_on(y);
   }
 
 
@@ -248,8 +263,7 @@ namespace PeriDeal
                                            const double                    *u,
                                            const Vector                    &tau) const
   {
-    take(u, &tau);
-    DeformedRows rows_of_nodes = all_rows();
+    DeformedRows rows_of_nodes = rows_at(u, &tau);
     for (const unsigned int i : of_nodes)
       {
         rows_of_nodes.begin = i;
@@ -273,8 +287,7 @@ namespace PeriDeal
     if (full)
       {
         std::vector<double> sums(n_owned), squares(n_owned);
-        take(u, nullptr);
-        sum_extensions<dim>(all_rows(), sums.data(), squares.data());
+        sum_extensions<dim>(rows_at(u, nullptr), sums.data(), squares.data());
         for (const double square : squares)
           sum += 0.25 * square;
         return sum;
@@ -290,15 +303,10 @@ namespace PeriDeal
   {
     ends.find(u);
     const auto renew = [&](BondRows<dim> &rows, const unsigned int i, const Bond &bond) {
-      const unsigned int   j     = bond.neighbor;
-      const std::size_t    k     = bonds.place(bond.number);
-      const Tensor<1, dim> along = ends.vector(i, j) + ends.change(u, i, j);
-      const double         of_both =
-        tau.local_element(i) + (ends.is_fictitious(j) ? 0. : tau.local_element(j));
-      const double size =
-        LinearPeridynamicSolid::force(bond.spring, extension_moment(u, i, bond), of_both);
-      rows.moments[k] = length(bond) / along.norm() * along;
-      rows.across[k]  = size * length(bond) / along.norm();
+      const std::size_t    k = bonds.place(bond.number);
+      const Tensor<1, dim> y = ends.vector(i, bond.neighbor) + ends.change(u, i, bond.neighbor);
+      rows.across[k]         = force(u, i, bond, tau) * length(bond) / y.norm();
+      rows.moments[k]        = direction(u, i, bond);
     };
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
       bonds.for_each_stored(i, [&](const Bond &bond) { renew(bonds.body, i, bond); });
@@ -328,8 +336,7 @@ namespace PeriDeal
   template <int dim>
   double BondKinematics<dim>::largest_stretch(const double *u) const
   {
-    take(u, nullptr);
-    return Utilities::MPI::max(largest_of_stretches<dim>(all_rows()),
+    return Utilities::MPI::max(largest_of_stretches<dim>(rows_at(u, nullptr)),
                                families.nodes().communicator());
   }
 

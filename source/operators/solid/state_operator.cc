@@ -457,15 +457,7 @@ namespace PeriDeal
       }
     for (const unsigned int i : losing)
       {
-        Tensor<1, dim> force;
-        solid.rows.for_each_stored(i, [&](const auto &bond) {
-          const double of_both = tau.local_element(i) + tau.local_element(bond.neighbor);
-          force +=
-            LinearPeridynamicSolid::force(bond.spring,
-                                          solid.kinematics.extension_moment(u.begin(), i, bond),
-                                          solid.laws.volumetric ? of_both : 0.) *
-            bond.moment;
-        });
+        const Tensor<1, dim> force = solid.kinematics.force_on(i, u.begin(), tau);
         for (unsigned int d = 0; d < dim; ++d)
           r.local_element(dim * i + d) = scratch.local_element(dim * i + d) + force[d];
       }

@@ -3,8 +3,13 @@
 
 #pragma once
 
+#include <deal.II/dofs/dof_handler.h>
+
 #include <perideal/bonds/families.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <unordered_set>
 #include <vector>
 
 namespace PeriDeal
@@ -41,13 +46,53 @@ namespace PeriDeal
     virtual bool may_break(const unsigned int node, const unsigned int neighbor) const = 0;
 
     /** The bond between two nodes known here has broken for good. */
-    virtual void mark_broken(const unsigned int a, const unsigned int b)     = 0;
-    virtual bool is_broken(const unsigned int a, const unsigned int b) const = 0;
+    void mark_broken(const unsigned int a, const unsigned int b)
+    {
+      broken.insert(key(a, b));
+    }
+
+    bool is_broken(const unsigned int a, const unsigned int b) const
+    {
+      return any_broken() && broken.count(key(a, b)) > 0;
+    }
+
+    bool any_broken() const
+    {
+      return !broken.empty();
+    }
+
+    /** A bond between two vertices of the cell has broken: what parts these cuts an edge of it. */
+    bool parts(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell) const
+    {
+      const auto node = [&](const unsigned int v) {
+        return families_of_bonds().nodes().partitioner()->global_to_local(
+          cell->vertex_dof_index(v, 0));
+      };
+      for (unsigned int v = 0; v < cell->n_vertices() && any_broken(); ++v)
+        for (unsigned int w = v + 1; w < cell->n_vertices(); ++w)
+          if (is_broken(node(v), node(w)))
+            return true;
+      return false;
+    }
 
     /** Add to a list the nodes that are to join where the body is about to break at a place. */
     virtual void find_joining(const dealii::Point<dim> &place,
                               std::vector<Joining>     &list) const = 0;
 
     virtual void join_nodes(const std::vector<Joining> &list) = 0;
+
+  protected:
+    std::size_t memory_of_marks() const
+    {
+      return broken.size() * 3 * sizeof(std::uint64_t);
+    }
+
+  private:
+    static std::uint64_t key(const unsigned int a, const unsigned int b)
+    {
+      return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
+    }
+
+    std::unordered_set<std::uint64_t> broken; // by local numbers of both ends
   };
 } // namespace PeriDeal

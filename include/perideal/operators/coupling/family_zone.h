@@ -6,9 +6,6 @@
 #include <perideal/operators/coupling/breakable_zone.h>
 #include <perideal/operators/coupling/node_weights.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <unordered_set>
 #include <vector>
 
 namespace PeriDeal
@@ -50,38 +47,19 @@ namespace PeriDeal
     }
 
     bool may_break(const unsigned int node, const unsigned int neighbor) const override;
-    void mark_broken(const unsigned int a, const unsigned int b) override
-    {
-      broken.insert(key(a, b));
-    }
-
-    bool is_broken(const unsigned int a, const unsigned int b) const override
-    {
-      return !broken.empty() && broken.count(key(a, b)) > 0;
-    }
-
-    /** Between two vertices of a cell. */
-    bool parts(const typename NodeWeights<dim>::Cell &cell) const;
-
     void find_joining(const dealii::Point<dim> &place, std::vector<Joining> &list) const override;
     void join_nodes(const std::vector<Joining> &list) override;
 
     std::size_t memory_consumption() const
     {
-      return broken.size() * 3 * sizeof(std::uint64_t);
+      return this->memory_of_marks();
     }
 
   private:
     using Site = typename Lattice<dim>::Index;
 
-    static std::uint64_t key(const unsigned int a, const unsigned int b)
-    {
-      return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
-    }
-
-    const Families<dim>              &families;
-    NodeWeights<dim>                 &weights;
-    const double                      reach, overlap;
-    std::unordered_set<std::uint64_t> broken; // by local numbers of both ends
+    const Families<dim> &families;
+    NodeWeights<dim>    &weights;
+    const double         reach, overlap;
   };
 } // namespace PeriDeal

@@ -110,20 +110,6 @@ namespace PeriDeal
       return true;
     }
 
-    void mark_broken(const unsigned int a, const unsigned int b) override;
-    bool is_broken(const unsigned int a, const unsigned int b) const override;
-
-    bool any_broken() const
-    {
-      return !broken.empty();
-    }
-
-    /**
-     * A bond between two vertices of the cell with that lowest corner has broken: a crack that
-     * parts vertices of a cell cuts an edge of it.
-     */
-    bool is_parted(const Site &cell) const;
-
     /** Nodes within one horizon that may join the zone. */
     void find_joining(const dealii::Point<dim> &place, std::vector<Joining> &list) const override;
     void join_nodes(const std::vector<Joining> &list) override;
@@ -149,9 +135,7 @@ namespace PeriDeal
     std::vector<Offset>  offsets;
     std::vector<Passage> passages;
     Site                 reach{};
-    // The bonds between vertices of a cell: start relative to the lowest corner, and offset.
-    std::vector<std::pair<Site, unsigned int>> vertex_pairs;
-    bool plain = true; // no void, one stiffness, one cell size
+    bool                 plain = true; // no void, one stiffness, one cell size
 
   private:
     void            find_offsets();
@@ -162,9 +146,7 @@ namespace PeriDeal
     const SiteData *at(const Site &site) const;
     SiteData       &own(const Site &site);
     Site            site_of(const unsigned int node) const;
-    double      strength_of(const Offset &offset, const Site &start, const double volumes) const;
-    std::size_t number_of(const SiteData &start, const Offset &offset) const;
-    std::size_t number_between(const unsigned int a, const unsigned int b) const;
+    double strength_of(const Offset &offset, const Site &start, const double volumes) const;
 
     const CellStiffness<dim> stiffness;
     double                   last;                      // time of the run
@@ -172,8 +154,7 @@ namespace PeriDeal
     bool                     uniform           = true;
     double                   uniform_stiffness = 0.;
     Site                     corner{}, extent{};
-    std::vector<SiteData>    sites;  // of the box around all nodes that may ever be in the zone
-    std::vector<bool>        broken; // by site of the start and offset; empty while all are whole
+    std::vector<SiteData>    sites; // of the box around all nodes that may ever be in the zone
   };
 
 
@@ -189,13 +170,6 @@ namespace PeriDeal
         key = key * extent[d] + x;
       }
     return key < sites.size() ? &sites[key] : nullptr;
-  }
-
-
-  template <int dim>
-  inline std::size_t LatticeBonds<dim>::number_of(const SiteData &start, const Offset &offset) const
-  {
-    return (&start - sites.data()) * offsets.size() + (&offset - offsets.data());
   }
 
 
@@ -249,10 +223,7 @@ namespace PeriDeal
             continue;
           const double strength = strength_of(offset, start, own->volume * neighbor->volume);
           if (strength != 0.)
-            visit(neighbor->node,
-                  offset,
-                  strength,
-                  any_broken() && broken[number_of(forward ? *own : *neighbor, offset)]);
+            visit(neighbor->node, offset, strength, this->is_broken(node, neighbor->node));
         }
   }
 

@@ -61,13 +61,7 @@ namespace PeriDeal
       return product;
     }
 
-    /** W x. @param xi the bond */
-    double length(const Bond &bond, const dealii::Tensor<1, dim> &xi) const
-    {
-      return full ? length(bond) : bond.moment * xi / xi.norm();
-    }
-
-    /** The same, with full kinematics. */
+    /** W x, with full kinematics. */
     double length(const Bond &bond) const
     {
       return bonds.rows_of(bond.number).lengths[bonds.place(bond.number)];
@@ -85,7 +79,10 @@ namespace PeriDeal
     /** y = -F of the deformed or warmer body, with tau = c theta/q. Collective. */
     void find_forces(Vector &y, const double *u, const Vector &tau) const;
 
-    /** The same of single nodes in the body, with full kinematics. y are those of owned nodes. */
+    /** What the bonds of an owned node in the body pull at it by. */
+    dealii::Tensor<1, dim> force_on(const unsigned int i, const double *u, const Vector &tau) const;
+
+    /** find_forces() of single nodes in the body, with full kinematics. y are those of owned nodes. */
     void find_forces_of(const std::vector<unsigned int> &nodes,
                         double                          *y,
                         const double                    *u,
@@ -120,10 +117,10 @@ namespace PeriDeal
     std::size_t memory_consumption() const;
 
   private:
-    void         take(const double *u, const Vector *tau) const;
-    DeformedRows all_rows() const;
+    /** The rows of the body with these displacements, which are taken over, and tau, or null. */
+    DeformedRows rows_at(const double *u, const Vector *tau) const;
+
     double strained_extension_moment(const double *u, const unsigned int i, const Bond &bond) const;
-    double thermal_strain(const unsigned int i, const Bond &bond) const;
 
     template <typename Visit>
     void visit_beyond(const Visit &visit) const
@@ -132,7 +129,12 @@ namespace PeriDeal
         bonds.for_each_beyond(i, [&](const Bond &bond) { visit(i, bond); });
     }
 
-    /** Take a force of a bond to a fictitious node from y, and pull at that node. */
+    /** Y, with full kinematics of the length W x, else W xi. */
+    dealii::Tensor<1, dim> direction(const double *u, const unsigned int i, const Bond &bond) const;
+
+    double force(const double *u, const unsigned int i, const Bond &bond, const Vector &tau) const;
+
+    /** Take a force of a bond from y, and pull at the other node if that is a fictitious one. */
     void subtract(Vector                       &y,
                   const unsigned int            i,
                   const unsigned int            j,

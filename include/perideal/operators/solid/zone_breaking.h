@@ -26,7 +26,7 @@ namespace PeriDeal
    * A bond breaks at a stretch (xi . (u_j - u_i))/x^2 - alpha dT, dT the mean of its ends, beyond
    * the smallest critical stretch on the way (BondStrengths), where the zone lets it
    * (BreakableZone::may_break()). In an exchange a cell between whose vertices a bond has broken
-   * keeps nothing (LatticeBonds::is_parted()).
+   * keeps nothing (BreakableZone::parts()).
    *
    * The zone grows around the centre of a cell whose largest principal strain, thermal strain taken
    * off, has reached a share of the critical stretch, and around the ends of broken bonds: in an
