@@ -72,7 +72,9 @@ namespace PeriDeal
 
     std::size_t memory_consumption() const
     {
-      return (nodes.capacity() + neighbors.capacity()) * sizeof(unsigned int) +
+      // What has been reserved and not written to takes no memory.
+      return (nodes.capacity() + (is_packed() ? neighbors.capacity() : neighbors.size())) *
+               sizeof(unsigned int) +
              starts.capacity() * sizeof(std::size_t) + moments.size() * sizeof(moments[0]) +
              (springs.size() + squares.size() + lengths.capacity() + across.capacity()) *
                sizeof(double) +
