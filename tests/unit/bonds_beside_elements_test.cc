@@ -128,7 +128,7 @@ namespace PeriDeal
         cells.matrix.add(row, row, left(i));
       }
     cells.matrix.compress(dealii::VectorOperation::add);
-    body.bonds.make_form();
+    body.bonds.make_form(body.problem.scene.peridynamics.form);
     cells.keep_rows(*body.nodes.partitioner());
     const Vector                   u        = body.field();
     Vector                         expected = body.sums(u), y = body.vector();

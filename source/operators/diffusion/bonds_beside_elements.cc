@@ -21,7 +21,7 @@ namespace PeriDeal
     : coupled(std::move(coupling))
     , factors(factors)
     , layout(coupled->families().nodes().partitioner())
-    , in_form(coupled->has_form())
+    , in_form(coupled->bonds_of_form() != nullptr)
   {}
 
 
@@ -180,10 +180,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondsBesideElements<dim>::make_form()
+  void BondsBesideElements<dim>::make_form(const OperatorForm wanted)
   {
     set_form_factors();
-    this->take(coupled->make_form(), layout);
+    const auto &bonds = *coupled->bonds_of_form();
+    this->take(takes_lattice_form(wanted, "", true) ? make_lattice_form(bonds) :
+                                                      make_stored_form(bonds),
+               layout);
   }
 
 
@@ -206,7 +209,7 @@ namespace PeriDeal
     std::vector<double> list(coupled->families().nodes().n_local());
     for (unsigned int i = 0; i < list.size(); ++i)
       list[i] = factors.at(i);
-    coupled->set_form_factors(std::move(list));
+    coupled->bonds_of_form()->factors().set(std::move(list), 1, true);
   }
 
 

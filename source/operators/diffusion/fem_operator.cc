@@ -81,7 +81,7 @@ namespace PeriDeal
     cells.cut().set(history.pieces(this->cracks_of), history.transmission(this->cracks_of));
     assemble();
     if (apart())
-      zone_bonds->make_form();
+      zone_bonds->make_form(body.peridynamics.form);
     const Rows all = this->all_rows();
     find_bounds(all, this->take_rows(all));
   }
@@ -127,20 +127,48 @@ namespace PeriDeal
       MatrixProduct(mass).vmult(y, x);
   }
 
+  namespace
+  {
+    /** Call visit(local number, place) for the owned unknowns, once for each of their cells. */
+    template <int dim, typename Visit>
+    void for_each_place(const DoFHandler<dim>             &dofs,
+                        const Utilities::MPI::Partitioner &layout,
+                        const Visit                       &visit)
+    {
+      const MappingQ1<dim>                 mapping;
+      std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (!cell->is_artificial())
+          {
+            cell->get_dof_indices(indices);
+            for (unsigned int i = 0; i < indices.size(); ++i)
+              if (layout.in_local_range(indices[i]))
+                visit(
+                  layout.global_to_local(indices[i]),
+                  mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i)));
+          }
+    }
+  } // namespace
+
+
   template <int dim>
   void FEMOperator<dim>::fill_noise(Vector &vector) const
   {
-    const MappingQ1<dim>                 mapping;
-    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        {
-          cell->get_dof_indices(indices);
-          for (unsigned int i = 0; i < indices.size(); ++i)
-            if (vector.in_local_range(indices[i]))
-              vector(indices[i]) = position_noise(
-                mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i)));
-        }
+    for_each_place(dofs, *layout, [&](const unsigned int i, const Point<dim> &p) {
+      vector.local_element(i) = position_noise(p);
+    });
+  }
+
+
+  template <int dim>
+  Point<dim> FEMOperator<dim>::position(const unsigned int local_index) const
+  {
+    Point<dim> found;
+    for_each_place(dofs, *layout, [&](const unsigned int i, const Point<dim> &p) {
+      if (i == local_index)
+        found = p;
+    });
+    return found;
   }
 
 
@@ -155,26 +183,6 @@ namespace PeriDeal
     for (const ContactPair &pair : contact)
       balance.cracks[pair.crack] +=
         0.5 * pair.side * pair.conductance * (wide(pair.other) - wide(pair.own));
-  }
-
-
-  template <int dim>
-  Point<dim> FEMOperator<dim>::position(const unsigned int local_index) const
-  {
-    const auto                           dof = layout->local_to_global(local_index);
-    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        {
-          cell->get_dof_indices(indices);
-          const auto found = std::find(indices.begin(), indices.end(), dof);
-          if (found != indices.end())
-            return MappingQ1<dim>().transform_unit_to_real_cell(
-              cell,
-              dofs.get_fe().unit_support_point(found - indices.begin()));
-        }
-    Assert(false, ExcInternalError());
-    return Point<dim>();
   }
 
 

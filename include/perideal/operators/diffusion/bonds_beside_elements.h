@@ -77,8 +77,8 @@ namespace PeriDeal
     /** As Coupling. */
     void take_conductivities_at(const Vector &u);
 
-    /** Make the form of bonds that are apart. */
-    void make_form();
+    /** Make the form of bonds that are apart. Throws UserError if they cannot have it. */
+    void make_form(const OperatorForm wanted);
 
     /** Take the bonds of some nodes anew into the form; their rows are inserted into the set. */
     void change_form(const std::vector<unsigned int> &nodes, RowSet &touched);

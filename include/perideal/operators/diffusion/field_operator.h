@@ -80,7 +80,7 @@ namespace PeriDeal
     /** All owned unknowns. */
     Rows all_rows() const;
 
-    /** Gershgorin's bound of these rows on all processes, with the sums of take_rows(). Collective. */
+    /** Gershgorin's bound of these rows on all processes, with take_rows()'s sums. Collective. */
     double largest_rate(const Rows &rows, const std::vector<double> &sums) const;
 
     /** Whether a row counts in Gershgorin's bound. */

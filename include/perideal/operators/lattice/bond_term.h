@@ -16,8 +16,8 @@
 namespace PeriDeal
 {
   /**
-   * What bonds conduct: sum_j W_ij (u_i - u_j), by a BondForm. Vectors have the horizon-wide halo of
-   * the nodes.
+   * What bonds conduct: sum_j W_ij (u_i - u_j), by a BondForm. Vectors have the horizon-wide halo
+   * of the nodes.
    */
   class BondTerm : public Term
   {
