@@ -95,7 +95,6 @@ namespace PeriDeal
   {
     const BondedSquare body(block);
     EXPECT_FALSE(body.bonds.apart());
-    EXPECT_EQ(body.bonds.sum_of(0), 0.);
     Matrix matrix = body.matrix();
     body.bonds.add_to(matrix);
     matrix.compress(dealii::VectorOperation::add);
@@ -116,8 +115,9 @@ namespace PeriDeal
   {
     BondedSquare body(Settings{{"Coupling/Zone", "everywhere"}});
     ASSERT_TRUE(body.bonds.apart());
-    Matrix matrix = body.matrix();
-    body.bonds.add_to(matrix); // nothing
+    MatrixTerm cells(false, true);
+    cells.matrix.copy_from(body.matrix());
+    body.bonds.add_to(cells.matrix); // nothing
     // What cells leave: something on the diagonal of some rows, and round-off elsewhere.
     const auto left = [&](const unsigned int i) {
       return body.nodes.position(i)[0] < 0.45 ? 3. : 1e-16;
@@ -125,11 +125,11 @@ namespace PeriDeal
     for (const unsigned int i : body.all)
       {
         const auto row = body.nodes.partitioner()->local_to_global(i);
-        matrix.add(row, row, left(i));
+        cells.matrix.add(row, row, left(i));
       }
-    matrix.compress(dealii::VectorOperation::add);
-    body.bonds.make_form();
-    body.bonds.take_remainder(matrix);
+    cells.matrix.compress(dealii::VectorOperation::add);
+    body.bonds.make_form(body.problem.scene.peridynamics.form);
+    cells.keep_rows(*body.nodes.partitioner());
     const Vector                   u        = body.field();
     Vector                         expected = body.sums(u), y = body.vector();
     std::vector<unsigned int>      finished(body.all.size(), 0);
@@ -143,8 +143,13 @@ namespace PeriDeal
           sum += bond.weight;
         EXPECT_NEAR(body.bonds.sum_of(i), sum, 1e-12 * sum);
       }
-    const double accuracy = 1e-12 * expected.linfty_norm();
-    body.bonds.multiply_then(y, u, [&](const unsigned int begin, const unsigned int end) {
+    const double   accuracy = 1e-12 * expected.linfty_norm();
+    const Term::At at{u, 0.};
+    double         entering = 0.;
+    body.bonds.begin(at, entering);
+    EXPECT_EQ(entering, 0.);
+    body.bonds.set_then(y, at, [&](const unsigned int begin, const unsigned int end) {
+      cells.add(y, at, begin, end);
       for (unsigned int i = begin; i < end; ++i)
         {
           ++finished[i];
@@ -153,10 +158,30 @@ namespace PeriDeal
     });
     EXPECT_TRUE(
       std::all_of(finished.begin(), finished.end(), [](const unsigned int n) { return n == 1; }));
-    OperatorSize size;
+    OperatorSize size, of_cells;
+    cells.add_to(of_cells);
+    EXPECT_TRUE(of_cells.form.empty());
+    const auto n_left = std::count_if(body.all.begin(), body.all.end(), [&](const unsigned int i) {
+      return left(i) > 1.;
+    });
+    EXPECT_EQ(of_cells.nonzeros, dealii::Utilities::MPI::sum(n_left, MPI_COMM_WORLD));
     body.bonds.add_to(size);
     EXPECT_FALSE(size.form.empty());
     EXPECT_GT(size.nonzeros, 0u);
+    // Both say what their matrices have.
+    Vector              diagonal = body.vector();
+    std::vector<double> row_sums(body.all.size(), 0.);
+    body.bonds.add_diagonal(diagonal, body.all);
+    body.bonds.add_row_sums(row_sums, body.all);
+    for (const unsigned int i : body.all)
+      EXPECT_EQ(row_sums[i], 2. * diagonal.local_element(i));
+    cells.add_diagonal(diagonal, body.all);
+    cells.add_row_sums(row_sums, body.all);
+    for (const unsigned int i : body.all)
+      {
+        EXPECT_DOUBLE_EQ(diagonal.local_element(i), body.bonds.sum_of(i) + left(i));
+        EXPECT_DOUBLE_EQ(row_sums[i], 2. * body.bonds.sum_of(i) + left(i));
+      }
   }
 
 

@@ -149,24 +149,40 @@ namespace PeriDeal
                                     {"Boundary conditions/Flux", "top: 3*x"},
                                     {"Boundary conditions/Convection", "right: 2, 4 + y*t"}});
     const NodeLoads<2> loads(body.nodes, body.constraints, body.problem.scene);
+    const unsigned int n = body.nodes.n_owned();
     EXPECT_TRUE(loads.depends_on_time());
-    EXPECT_EQ(loads.constant(), nullptr);
-    EXPECT_EQ(loads.constant_sum(), 0.);
+    EXPECT_TRUE(loads.any());
     for (const double t : {0., 3.})
       {
-        Vector       f(body.nodes.partitioner());
-        const double of_free = loads.add_to(f, t), total = 1. + 1.5 + 2. * (4. + 0.5 * t);
+        const Vector &f     = loads.at(t);
+        const double  total = 1. + 1.5 + 2. * (4. + 0.5 * t);
         EXPECT_NEAR(sum_of_entries(f), total, 1e-12);
+        EXPECT_NEAR(sum_of_all(loads.sum()), total, 1e-12);
         // At the bottom half a row has the source, and half a side of a cell convection.
-        EXPECT_NEAR(sum_of_all(of_free), total - 0.05 - 2. * 0.05 * 4., 1e-12);
+        EXPECT_NEAR(sum_of_all(body.constraints.sum(f, 0, n)), 0.05 + 2. * 0.05 * 4., 1e-12);
       }
-    const Vector u = body.field([](const Point<2> &p) { return 1. + p[0] + p[1]; });
-    Vector       y(body.nodes.partitioner());
+    const Vector      u = body.field([](const Point<2> &p) { return 1. + p[0] + p[1]; });
+    Vector            y(body.nodes.partitioner()), diagonal = y;
+    const SideTerm<2> sides(loads);
     EXPECT_NEAR(sum_of_all(loads.through_transfer(u)), -5., 1e-12);
-    const unsigned int n = body.nodes.n_owned();
     for (const auto &[begin, end] : {std::make_pair(0u, n / 3), std::make_pair(n / 3, n)})
-      loads.add_transfer(y, u, begin, end);
+      sides.add(y, {u, 3.}, begin, end);
     EXPECT_NEAR(sum_of_entries(y), 5., 1e-12);
+    Vector whole(body.nodes.partitioner());
+    sides.set_then(whole, {u, 3., true}, [&](const unsigned int begin, const unsigned int end) {
+      EXPECT_EQ(begin, 0u);
+      EXPECT_EQ(end, n);
+    });
+    EXPECT_EQ(largest_difference(whole, y), 0.);
+    // Its matrix is diagonal.
+    std::vector<double> sums(n, 0.);
+    sides.add_diagonal(diagonal, body.all);
+    sides.add_row_sums(sums, body.all);
+    for (const unsigned int i : body.all)
+      {
+        EXPECT_DOUBLE_EQ(diagonal.local_element(i) * u.local_element(i), y.local_element(i));
+        EXPECT_EQ(sums[i], 2. * diagonal.local_element(i));
+      }
     Balance balance;
     loads.add_to(balance, u, 3.);
     EXPECT_NEAR(sum_of_all(balance.sources), 1., 1e-12);
@@ -180,19 +196,16 @@ namespace PeriDeal
     const BondedPlate  none(Settings{{"Boundary conditions/Dirichlet", "left: 1"}});
     const NodeLoads<2> nothing(none.nodes, none.constraints, none.problem.scene);
     EXPECT_FALSE(nothing.depends_on_time());
-    EXPECT_EQ(nothing.constant(), nullptr);
+    EXPECT_FALSE(nothing.any());
+    EXPECT_EQ(nothing.at(5.).linfty_norm(), 0.);
     const BondedPlate  body(Settings{{"Initial and source/Source", "2 + x"},
                                     {"Boundary conditions/Dirichlet", "left: 1"}});
     const NodeLoads<2> kept(body.nodes, body.constraints, body.problem.scene);
-    Vector             f(body.nodes.partitioner());
-    const double       sum = kept.add_to(f, 5.);
-    EXPECT_GT(sum_of_entries(f), 2.4);
-    EXPECT_EQ(kept.constant_sum(), sum);
-    ASSERT_NE(kept.constant(), nullptr);
-    for (const unsigned int i : body.all)
-      EXPECT_EQ(kept.constant()[i], f.local_element(i));
-    EXPECT_GT(kept.memory_consumption(), nothing.memory_consumption());
-    // Slaves follow their flux, which is no load.
+    const Vector       f = kept.at(5.);
+    EXPECT_TRUE(kept.any());
+    EXPECT_NEAR(sum_of_entries(f), 2.5, 1e-12);
+    EXPECT_EQ(largest_difference(kept.at(7.), f), 0.);
+    // Slaves follow their flux, and have no load.
     const BondedPlate  drawn(Settings{{"Peridynamics/Flux treatment", "extrapolation"},
                                      {"Initial and source/Source", "1"},
                                      {"Boundary conditions/Flux", "top: 3*t"}});
@@ -202,21 +215,26 @@ namespace PeriDeal
     EXPECT_NEAR(sum_of_all(loads.through_slaves(2.)), 6., 1e-12);
     EXPECT_NEAR(sum_of_all(balance.sides["top"]), 6., 1e-12);
     EXPECT_NEAR(sum_of_all(balance.sources), 0.95, 1e-12);
+    EXPECT_NEAR(sum_of_entries(loads.at(2.)), 0.95, 1e-12);
+    for (const unsigned int i : drawn.all)
+      if (drawn.constraints.kind(i) == NodeConstraints<2>::slave)
+        EXPECT_EQ(loads.at(2.).local_element(i), 0.);
   }
 
 
   TEST(DiffusionParts, flow_from_beyond_the_sides)
   {
-    BondedPlate    body(Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
+    BondedPlate         body(Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
                               {"Boundary conditions/Dirichlet", "left: 1 + t ; right: 3 + t"},
                               {"Boundary conditions/Symmetry", "bottom, top"},
                               {"Cracks/Segments", "0.04,0.3 ; 0.04,0.35"},
                               {"Cracks/Growth", "2: 0, 0,0.5"},
                               {"Time/End time", "1"}});
-    const auto    &fictitious = body.bonds.neighbors().outside();
-    OutsideFlow<2> outside(body.bonds);
-    const Vector   u      = body.field([](const Point<2> &p) { return 1.5 + 2. * p[0]; });
-    const double  *values = outside.values(u, 0.5);
+    const auto         &fictitious = body.bonds.neighbors().outside();
+    ExtendedBondTerm<2> term(body.bonds, body.constraints, body.problem.scene.boundary_conditions);
+    term.take(make_stored_form(body.bonds), body.nodes.partitioner());
+    const Vector               u = body.field([](const Point<2> &p) { return 1.5 + 2. * p[0]; });
+    const std::vector<double> &values = term.values({u, 0.5});
     // The sum over the bonds with fictitious nodes, as they are now.
     const auto expected = [&] {
       double sum = 0.;
@@ -228,23 +246,28 @@ namespace PeriDeal
       return sum;
     };
     ASSERT_GT(sum_of_all(fictitious.size()), 100.);
-    ASSERT_EQ(outside.last_values().size(), fictitious.size());
+    ASSERT_EQ(values.size(), fictitious.size());
     for (std::size_t f = 0; f < fictitious.size(); ++f)
       {
         // Mirrored about its own values a linear field is linear beyond its sides too.
         const Point<2> p = body.nodes.lattice()->position(fictitious[f].site);
         EXPECT_NEAR(values[f], 1.5 + 2. * p[0], 1e-12);
       }
-    const auto flow = [&] {
+    const auto flow = [&](const Vector &v) {
       double sum = 0.;
-      outside.add_to(sum, u);
+      term.begin({v, 0.5}, sum);
       return sum;
     };
     const double size   = body.problem.op().diagonal().linfty_norm();
     const double before = expected();
-    EXPECT_NEAR(flow(), before, 1e-12 * size);
+    EXPECT_NEAR(flow(u), before, 1e-12 * size);
+    // With what is given beyond left out it is linear.
+    double direction = 0.;
+    term.begin({u, 0.5, true}, direction);
+    EXPECT_GT(std::abs(sum_of_all(direction - before)), 1e-3);
+    term.values({u, 0.5});
     Balance balance;
-    outside.add_to(balance, u, body.constraints, body.problem.scene.boundary_conditions);
+    term.add_flows(balance, {u, 0.5});
     EXPECT_NEAR(sum_of_sides(balance), sum_of_all(before), 1e-12 * size);
     EXPECT_LT(sum_of_all(balance.sides["left"]), -0.1);
     EXPECT_GT(sum_of_all(balance.sides["right"]), 0.1);
@@ -255,13 +278,12 @@ namespace PeriDeal
     ChangeSet<2> change;
     change.to = history.representative(1.);
     body.bonds.cracks().apply_change(change);
-    const Vector w = body.field(bumpy<2>);
-    outside.values(w, 0.5);
-    const std::vector<double> of_w = outside.last_values();
-    double                    kept = 0., now = 0., direct = 0.;
-    outside.add_to(kept, w);
-    outside.update(body.all);
-    outside.add_to(now, w);
+    const Vector              w      = body.field(bumpy<2>);
+    const std::vector<double> of_w   = term.values({w, 0.5});
+    double                    direct = 0.;
+    const double              kept   = flow(w);
+    term.update_rows(body.all);
+    const double now = flow(w);
     for (const unsigned int i : body.all)
       for (const auto &bond : body.bonds_of(i))
         if (bond.neighbor >= body.nodes.n_local())
@@ -269,7 +291,7 @@ namespace PeriDeal
     EXPECT_NEAR(now, direct, 1e-12 * size);
     EXPECT_GT(sum_of_all(std::abs(now - kept)), 1e-6 * size);
 
-    const double *homogeneous = outside.homogeneous_values(w);
+    const std::vector<double> &homogeneous = term.values({w, 0.5, true});
     for (std::size_t f = 0; f < fictitious.size(); ++f)
       EXPECT_NEAR(homogeneous[f], of_w[f] - fictitious[f].constant(0.5), 1e-12);
   }

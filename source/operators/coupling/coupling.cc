@@ -107,8 +107,8 @@ namespace PeriDeal
                                                const Zone<dim>           &zone,
                                                const CouplingScheme       scheme)
   {
-    if (auto weighting = make_weighting(scheme))
-      return std::make_unique<WeightedBonds<dim>>(nodes, body, zone, std::move(weighting));
+    if (scheme != CouplingScheme::exchange)
+      return std::make_unique<WeightedBonds<dim>>(nodes, body, zone, scheme);
     return make_exchange<ConductingBonds<dim>>(nodes, body, zone);
   }
 
@@ -119,8 +119,8 @@ namespace PeriDeal
   {
     Zone<dim> zone(body.coupling, body.horizon());
     zone.stay_in({{body.domain.lower, body.domain.upper}});
-    if (auto weighting = make_weighting(body.coupling.scheme))
-      return std::make_unique<StateCoupling<dim>>(nodes, body, zone, std::move(weighting));
+    if (body.coupling.scheme != CouplingScheme::exchange)
+      return std::make_unique<StateCoupling<dim>>(nodes, body, zone, body.coupling.scheme);
     return make_exchange<ElasticBonds<dim>>(nodes, body, zone);
   }
 

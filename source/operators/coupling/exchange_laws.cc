@@ -73,7 +73,7 @@ namespace PeriDeal
   template <int dim>
   CellSurplus ConductingBonds<dim>::calibrate(LatticeBonds<dim> &bonds)
   {
-    const Lattice<dim>     &lattice = *bonds.families.nodes().lattice();
+    const Lattice<dim>     &lattice = *bonds.families().nodes().lattice();
     const double            volume  = lattice.cell_volume();
     std::array<double, dim> A{};
     constexpr unsigned int  n = GeometryInfo<dim>::vertices_per_cell;
@@ -98,20 +98,6 @@ namespace PeriDeal
   {
     const bool suits = of_lattice.plain || !of_lattice.zone.is_everywhere();
     takes_lattice_form(form, suits ? "" : "the conductivity varies or the body has voids", true);
-  }
-
-
-  template <int dim>
-  std::unique_ptr<BondForm> ConductingBonds<dim>::make_form() const
-  {
-    return takes_lattice_form(form, "", true) ? make_lattice_form(bonds) : make_stored_form(bonds);
-  }
-
-
-  template <int dim>
-  void ConductingBonds<dim>::set_form_factors(std::vector<double> factors)
-  {
-    bonds.factors().set(std::move(factors), 1, true);
   }
 
 
@@ -208,7 +194,7 @@ namespace PeriDeal
             list[k++] = std::pow(xi[a] * xi[b] / xi.norm_square(), 2);
         return list;
       };
-      const double                volume = bonds.families.nodes().lattice()->cell_volume();
+      const double                volume = bonds.families().nodes().lattice()->cell_volume();
       Eigen::Matrix<double, n, n> sums   = Eigen::Matrix<double, n, n>::Zero();
       Eigen::Matrix<double, n, 1> wanted;
       unsigned int                row = 0;
@@ -313,7 +299,7 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           sum += offset.weight * std::pow(xi.norm_square(), 2) * std::abs(xi[d]) / dim;
       }
-    return 0.5 * bonds.families.nodes().lattice()->cell_volume() * sum;
+    return 0.5 * bonds.families().nodes().lattice()->cell_volume() * sum;
   }
 
 
@@ -334,7 +320,7 @@ namespace PeriDeal
     M.triangularView<Eigen::StrictlyUpper>() = M.transpose();
     const Eigen::MatrixXd modes = cell_modes<dim>(), linear = modes.leftCols(n_linear),
                           others = modes.rightCols(n_others);
-    const Eigen::MatrixXd Q      = unit_stiffness<dim>(bonds.families.nodes().lattice()->spacing);
+    const Eigen::MatrixXd Q      = unit_stiffness<dim>(bonds.families().nodes().lattice()->spacing);
     // Bonds in cells of three dimensions couple shear to the mode x y z of the corners.
     const Eigen::MatrixXd mixed  = linear.transpose() * M * others;
     Eigen::MatrixXd       excess = others.transpose() * (M - Q) * others;

@@ -3,7 +3,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/coupling/lattice_bonds.h>
 
 #include <algorithm>
@@ -18,8 +17,7 @@ namespace PeriDeal
                                   const BodyParameters<dim> &body,
                                   const Zone<dim>           &zone,
                                   const CellStiffness<dim>  &stiffness)
-    : families(nodes, body, HaloAround::cells)
-    , zone(zone)
+    : Coupling<dim>(nodes, body, zone)
     , stiffness(stiffness)
     , last(body.cracks.end_time)
   {
@@ -36,7 +34,7 @@ namespace PeriDeal
   template <int dim>
   Tensor<1, dim> LatticeBonds<dim>::vector_of(const Offset &offset) const
   {
-    Tensor<1, dim> xi = families.nodes().lattice()->spacing;
+    Tensor<1, dim> xi = own_families.nodes().lattice()->spacing;
     for (unsigned int d = 0; d < dim; ++d)
       xi[d] *= offset.site[d];
     return xi;
@@ -46,7 +44,7 @@ namespace PeriDeal
   template <int dim>
   void LatticeBonds<dim>::find_offsets()
   {
-    for (const FamilyMember<dim> &member : families.weights().members())
+    for (const FamilyMember<dim> &member : own_families.weights().members())
       {
         for (unsigned int d = 0; d < dim; ++d)
           reach[d] = std::max(reach[d], member.offset[d]);
@@ -107,12 +105,9 @@ namespace PeriDeal
   template <int dim>
   void LatticeBonds<dim>::find_sites(const BodyParameters<dim> &body)
   {
-    const Nodes<dim>        &nodes   = families.nodes();
-    const Lattice<dim>      &lattice = *nodes.lattice();
-    const CrackHistory<dim> &history = families.cracks().history();
-    Zone<dim>                at_end  = zone;
-    at_end.set_cracks(history.pieces(last));
-    zone.set_cracks(history.pieces(history.representative(0.)));
+    const Nodes<dim>   &nodes   = own_families.nodes();
+    const Lattice<dim> &lattice = *nodes.lattice();
+    const Zone<dim>     at_end  = this->zone_at(last);
     // Diffusion takes broken bonds out of its cells, and needs no more bonds for it.
     const bool              follows = zone.follows_stretches() && body.deforms;
     const std::vector<bool> hanging = hanging_nodes(nodes);
@@ -149,7 +144,7 @@ namespace PeriDeal
   {
     if (sites.empty())
       return;
-    const Lattice<dim> &lattice = *families.nodes().lattice();
+    const Lattice<dim> &lattice = *own_families.nodes().lattice();
     Site                last    = corner;
     for (unsigned int d = 0; d < dim; ++d)
       last[d] += extent[d] - 2;
@@ -187,7 +182,7 @@ namespace PeriDeal
         Site site = cell;
         for (unsigned int d = 0; d < dim; ++d)
           site[d] += (v >> d) & 1;
-        corners[v] = families.nodes().lattice()->position(site);
+        corners[v] = own_families.nodes().lattice()->position(site);
         if (u != nullptr)
           temperatures[v] = u->local_element(at(site)->node);
       }
@@ -222,7 +217,7 @@ namespace PeriDeal
   template <int dim>
   typename LatticeBonds<dim>::Site LatticeBonds<dim>::site_of(const unsigned int node) const
   {
-    return families.nodes().lattice()->index(families.nodes().position(node));
+    return own_families.nodes().lattice()->index(own_families.nodes().position(node));
   }
 
 
@@ -243,7 +238,7 @@ namespace PeriDeal
     const SiteData *own  = at(site);
     if (own == nullptr || !own->may_join)
       return;
-    for (const FamilyMember<dim> &member : families.weights().members())
+    for (const FamilyMember<dim> &member : own_families.weights().members())
       if (const SiteData *other = at(site + member.offset); other != nullptr && other->may_join)
         neighbors.push_back(other->node);
   }
@@ -255,10 +250,10 @@ namespace PeriDeal
     std::vector<BoundingBox<dim>> boxes;
     if (!zone.follows_cracks() || sites.empty())
       return boxes;
-    const Lattice<dim> &lattice = *families.nodes().lattice();
-    Zone<dim>           then    = zone;
-    then.set_cracks(families.cracks().history().pieces(time));
-    for (BoundingBox<dim> wide : families.cracks().history().changes(families.cracks().now(), time))
+    const Lattice<dim> &lattice = *own_families.nodes().lattice();
+    const Zone<dim>     then    = this->zone_at(time);
+    for (BoundingBox<dim> wide :
+         own_families.cracks().history().changes(own_families.cracks().now(), time))
       {
         wide.extend(zone.width() + lattice.spacing.norm());
         Site first = lattice.index(wide.get_boundary_points().first),
@@ -282,16 +277,8 @@ namespace PeriDeal
   void LatticeBonds<dim>::join(const double time)
   {
     for (const BoundingBox<dim> &box : joining_by(time))
-      own(families.nodes().lattice()->index(box.get_boundary_points().first)).in_zone = true;
-    zone.set_cracks(families.cracks().history().pieces(time));
-  }
-
-
-  template <int dim>
-  void LatticeBonds<dim>::apply_change(const ChangeSet<dim> &change)
-  {
-    join(change.to);
-    families.cracks().apply_change(change);
+      own(own_families.nodes().lattice()->index(box.get_boundary_points().first)).in_zone = true;
+    zone = this->zone_at(time);
   }
 
 
@@ -300,8 +287,8 @@ namespace PeriDeal
   {
     if (sites.empty())
       return;
-    const Lattice<dim> &lattice = *families.nodes().lattice();
-    const double        within  = families.weights().horizon() * (1. + 1e-9);
+    const Lattice<dim> &lattice = *own_families.nodes().lattice();
+    const double        within  = own_families.weights().horizon() * (1. + 1e-9);
     Site                first, last;
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -327,10 +314,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool LatticeBonds<dim>::is_of_lattice(
-    const typename DoFHandler<dim>::active_cell_iterator &cell) const
+  bool LatticeBonds<dim>::is_of_lattice(const Cell &cell) const
   {
-    return cell->extent_in_direction(0) <= 1.5 * families.nodes().lattice()->spacing[0];
+    return cell->extent_in_direction(0) <= 1.5 * own_families.nodes().lattice()->spacing[0];
   }
 
 
@@ -352,7 +338,7 @@ namespace PeriDeal
   template <int dim>
   std::size_t LatticeBonds<dim>::memory_consumption() const
   {
-    return families.memory_consumption() + sites.capacity() * sizeof(SiteData) +
+    return own_families.memory_consumption() + sites.capacity() * sizeof(SiteData) +
            this->memory_of_marks() + passages.capacity() * sizeof(Passage);
   }
 

@@ -14,14 +14,11 @@ namespace PeriDeal
   LatticeExchange<dim, Law>::LatticeExchange(Nodes<dim>                &nodes,
                                              const BodyParameters<dim> &body,
                                              const Zone<dim>           &zone)
-    : bonds(nodes, body, zone, Law::stiffness(body))
-    , law(bonds.families, body)
+    : LatticeBonds<dim>(nodes, body, zone, Law::stiffness(body))
+    , law(own_families, body)
   {
-    if constexpr (Law::has_form)
-      law.check_form(bonds);
-    surplus = Law::calibrate(bonds);
-    for (const auto &offset : bonds.offsets)
-      directions.push_back(Law::direction(bonds.vector_of(offset)));
+    law.check_form(*this);
+    surplus = Law::calibrate(*this);
   }
 
 
@@ -29,8 +26,8 @@ namespace PeriDeal
   void LatticeExchange<dim, Law>::bonds_of(const unsigned int node, std::vector<Bond> &list) const
   {
     list.clear();
-    const bool near_crack = bonds.families.near_crack(node);
-    bonds.for_each_bond(
+    const bool near_crack = own_families.near_crack(node);
+    this->for_each_bond(
       node,
       [&](const unsigned int neighbor, const auto &, const double strength, const bool broken) {
         Bond bond{neighbor, broken ? 0. : strength, strength, broken};
@@ -42,17 +39,9 @@ namespace PeriDeal
 
 
   template <int dim, typename Law>
-  void LatticeExchange<dim, Law>::possible_neighbors_of(const unsigned int         node,
-                                                        std::vector<unsigned int> &neighbors) const
-  {
-    bonds.possible_neighbors_of(node, neighbors);
-  }
-
-
-  template <int dim, typename Law>
   bool LatticeExchange<dim, Law>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
   {
-    if (!bonds.is_of_lattice(cell))
+    if (!this->is_of_lattice(cell))
       return false;
     if (leaves_nothing(cell))
       {
@@ -60,21 +49,21 @@ namespace PeriDeal
         return true;
       }
     constexpr unsigned int    n    = Law::n_components * GeometryInfo<dim>::vertices_per_cell;
-    const Site                site = bonds.families.nodes().lattice()->index(cell->vertex(0));
+    const Site                site = own_families.nodes().lattice()->index(cell->vertex(0));
     std::array<double, n * n> taken{};
     bool                      any = false;
-    bonds.for_each_passage(site, [&](const auto &passage, const double share) {
+    this->for_each_passage(site, [&](const auto &passage, const double share) {
       any               = true;
       const auto values = corner_values<Law::n_components>(
         passage.change,
-        Law::direction(bonds.vector_of(bonds.offsets[passage.offset])));
+        Law::direction(this->vector_of(this->offsets[passage.offset])));
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j <= i; ++j)
           taken[i * n + j] += share * values[i] * values[j];
     });
     if (!any)
       return false;
-    stiffness.add(bonds.stiffness_of(site), surplus.matrix);
+    stiffness.add(this->stiffness_of(site), surplus.matrix);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
         stiffness(i, j) -= taken[std::max(i, j) * n + std::min(i, j)];
@@ -85,7 +74,7 @@ namespace PeriDeal
   template <int dim, typename Law>
   bool LatticeExchange<dim, Law>::finish_cell(const Cell &cell, FullMatrix<double> &stiffness) const
   {
-    if (!parts_cell(cell))
+    if (!this->parts_cell(cell))
       return false;
     stiffness = 0.;
     return true;
@@ -93,86 +82,39 @@ namespace PeriDeal
 
 
   template <int dim, typename Law>
-  bool LatticeExchange<dim, Law>::parts_cell(const Cell &cell) const
-  {
-    return bonds.parts(cell);
-  }
-
-
-  template <int dim, typename Law>
   bool LatticeExchange<dim, Law>::leaves_nothing(const Cell &cell) const
   {
-    if (!bonds.plain || !bonds.zone.is_everywhere() || !surplus.takes_all)
+    if (!this->plain || !this->zone.is_everywhere() || !surplus.takes_all)
       return false;
     // All bonds that pass a cell far from the body's sides are there, with whole volumes.
-    const Lattice<dim> &lattice = *bonds.families.nodes().lattice();
+    const Lattice<dim> &lattice = *own_families.nodes().lattice();
     const Site          site    = lattice.index(cell->vertex(0));
     for (unsigned int d = 0; d < dim; ++d)
-      if (site[d] < bonds.reach[d] || site[d] + 1 + bonds.reach[d] >= lattice.n_sites[d])
+      if (site[d] < this->reach[d] || site[d] + 1 + this->reach[d] >= lattice.n_sites[d])
         return false;
     return true;
   }
 
 
   template <int dim, typename Law>
-  bool LatticeExchange<dim, Law>::has_form() const
+  DiffusionBonds<dim> *LatticeExchange<dim, Law>::bonds_of_form()
   {
-    return Law::has_form && bonds.plain && bonds.zone.is_everywhere();
+    return this->plain && this->zone.is_everywhere() ? law.conducting() : nullptr;
   }
 
-  template <int dim, typename Law>
-  std::unique_ptr<BondForm> LatticeExchange<dim, Law>::make_form()
-  {
-    if constexpr (Law::has_form)
-      return law.make_form();
-    return nullptr;
-  }
-
-  template <int dim, typename Law>
-  void LatticeExchange<dim, Law>::set_form_factors(std::vector<double> factors)
-  {
-    if constexpr (Law::has_form)
-      law.set_form_factors(std::move(factors));
-  }
-
-  template <int dim, typename Law>
-  std::vector<BoundingBox<dim>> LatticeExchange<dim, Law>::joining_by(const double time) const
-  {
-    return bonds.joining_by(time);
-  }
-
-  template <int dim, typename Law>
-  void LatticeExchange<dim, Law>::join(const double time)
-  {
-    bonds.join(time);
-  }
-
-  template <int dim, typename Law>
-  void LatticeExchange<dim, Law>::apply_change(const ChangeSet<dim> &change)
-  {
-    bonds.apply_change(change);
-  }
 
   template <int dim, typename Law>
   void LatticeExchange<dim, Law>::take_conductivities_at(const Vector &u)
   {
-    if constexpr (Law::has_form) // diffusion
-      {
-        law.take_conductivities_at(u);
-        bonds.take_conductivities_at(u);
-      }
+    law.take_conductivities_at(u);
+    LatticeBonds<dim>::take_conductivities_at(u);
   }
 
-  template <int dim, typename Law>
-  bool LatticeExchange<dim, Law>::in_zone(const unsigned int node) const
-  {
-    return bonds.in_zone(node);
-  }
 
   template <int dim, typename Law>
   std::size_t LatticeExchange<dim, Law>::memory_consumption() const
   {
-    return bonds.memory_consumption() + law.memory_consumption();
+    return LatticeBonds<dim>::memory_consumption() + law.memory_consumption();
   }
 
 

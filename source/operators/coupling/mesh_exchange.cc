@@ -50,18 +50,15 @@ namespace PeriDeal
   MeshExchange<dim, Law>::MeshExchange(Nodes<dim>                &nodes,
                                        const BodyParameters<dim> &body,
                                        const Zone<dim>           &zone)
-    : own_families(
+    : Coupling<dim>(
         nodes,
         body,
-        HaloAround::cells,
+        zone,
         [at_end = zone_at_end(zone, body)](const Point<dim> &p) { return at_end.contains(p); })
     , law(own_families, body)
     , stiffness(Law::stiffness(body))
-    , zone(zone)
   {
-    const CrackHistory<dim> &history = own_families.cracks().history();
-    const Zone<dim>          at_end  = zone_at_end(zone, body);
-    this->zone.set_cracks(history.pieces(history.representative(0.)));
+    const Zone<dim>         at_end    = this->zone_at(body.cracks.end_time);
     const std::vector<bool> hanging   = hanging_nodes(nodes);
     double                  n_in_zone = 0.;
     joined.resize(nodes.n_local());
@@ -355,19 +352,12 @@ namespace PeriDeal
 
 
   template <int dim, typename Law>
-  bool MeshExchange<dim, Law>::zone_follows_cracks() const
-  {
-    return zone.follows_cracks();
-  }
-
-  template <int dim, typename Law>
   std::vector<BoundingBox<dim>> MeshExchange<dim, Law>::joining_by(const double time) const
   {
     std::vector<BoundingBox<dim>> boxes;
     if (!zone.follows_cracks())
       return boxes;
-    Zone<dim> then = zone;
-    then.set_cracks(own_families.cracks().history().pieces(time));
+    const Zone<dim> then = this->zone_at(time);
     for (unsigned int i = 0; i < joined.size(); ++i)
       if (may_join[i] && !joined[i] && then.contains(own_families.nodes().position(i)))
         {
@@ -383,7 +373,7 @@ namespace PeriDeal
   void MeshExchange<dim, Law>::join(const double time)
   {
     bool any = false;
-    zone.set_cracks(own_families.cracks().history().pieces(time));
+    zone = this->zone_at(time);
     for (unsigned int i = 0; i < joined.size() && zone.follows_cracks(); ++i)
       if (may_join[i] && !joined[i] && zone.contains(own_families.nodes().position(i)))
         {
@@ -392,14 +382,6 @@ namespace PeriDeal
         }
     if (Utilities::MPI::max(any ? 1 : 0, own_families.nodes().communicator()) > 0)
       find_bonds();
-  }
-
-
-  template <int dim, typename Law>
-  void MeshExchange<dim, Law>::apply_change(const ChangeSet<dim> &change)
-  {
-    join(change.to);
-    own_families.cracks().apply_change(change);
   }
 
 
@@ -423,19 +405,16 @@ namespace PeriDeal
   template <int dim, typename Law>
   void MeshExchange<dim, Law>::take_conductivities_at(const Vector &u)
   {
-    if constexpr (Law::has_form) // diffusion
+    law.take_conductivities_at(u);
+    typename CellStiffness<dim>::CornerValues temperatures;
+    for (unsigned int c = 0; c < taken.size(); ++c)
       {
-        law.take_conductivities_at(u);
-        typename CellStiffness<dim>::CornerValues temperatures;
-        for (unsigned int c = 0; c < taken.size(); ++c)
-          {
-            for (unsigned int v = 0; v < n_corners; ++v)
-              temperatures[v] = u(cells[c].nodes[v]);
-            states[c].of_stiffness = stiffness.range(cells[c].corners, &temperatures);
-          }
-        share_states();
-        find_bonds();
+        for (unsigned int v = 0; v < n_corners; ++v)
+          temperatures[v] = u(cells[c].nodes[v]);
+        states[c].of_stiffness = stiffness.range(cells[c].corners, &temperatures);
       }
+    share_states();
+    find_bonds();
   }
 
   template <int dim, typename Law>

@@ -53,11 +53,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  StateCoupling<dim>::StateCoupling(Nodes<dim>                      &nodes,
-                                    const BodyParameters<dim>       &body,
-                                    const Zone<dim>                 &zone,
-                                    std::unique_ptr<const Weighting> weighting)
-    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting))
+  StateCoupling<dim>::StateCoupling(Nodes<dim>                &nodes,
+                                    const BodyParameters<dim> &body,
+                                    const Zone<dim>           &zone,
+                                    const CouplingScheme       scheme)
+    : WeightedCoupling<dim>(nodes, body, zone, scheme)
   {
     if (body.peridynamics.completes_families())
       {
@@ -135,7 +135,7 @@ namespace PeriDeal
     double q = 0.;
     for (const BondOfFamily &bond : list)
       q += bond.square / own_families.nodes().volume(node);
-    const double weight = this->weighting->of_family(weights_now[node]),
+    const double weight = this->weighting.of_family(weights_now[node]),
                  spring = weight * laws[node].extension / q;
     if (dim == 1) // no dilatation: rows of single bonds reach one horizon, not two
       {
@@ -200,14 +200,14 @@ namespace PeriDeal
                                        std::vector<unsigned int> &nodes,
                                        std::vector<BondOfFamily> &list) const
   {
-    if (!acts[node] || this->weighting->of_family(weights[node]) == 0.)
+    if (!acts[node] || this->weighting.of_family(weights[node]) == 0.)
       return false;
     nodes.assign(1, node);
     add_neighbors(intact, strain, nodes, list);
     if (extension)
       add_fictitious(strain, nodes, list);
     return !list.empty() && std::any_of(nodes.begin(), nodes.end(), [&](const unsigned int j) {
-      return this->weighting->of_row(weights[j]) > 0.;
+      return this->weighting.of_row(weights[j]) > 0.;
     });
   }
 
@@ -374,18 +374,18 @@ namespace PeriDeal
   void StateCoupling<dim>::find_rows(const NodeWeights<dim> &weights, Family &family) const
   {
     for (const unsigned int j : family.nodes)
-      family.has_row.push_back(this->weighting->of_row(weights[j]) > 0.);
+      family.has_row.push_back(this->weighting.of_row(weights[j]) > 0.);
   }
 
 
   template <int dim>
   void StateCoupling<dim>::scale_rows(Family &family) const
   {
-    family.thermal_energy *= this->weighting->of_row(weights_now[family.nodes[0]]);
+    family.thermal_energy *= this->weighting.of_row(weights_now[family.nodes[0]]);
     find_rows(weights_now, family);
     for (unsigned int a = 0; a < family.thermal.size(); ++a)
       {
-        const double factor = this->weighting->of_row(weights_now[family.nodes[a / dim]]);
+        const double factor = this->weighting.of_row(weights_now[family.nodes[a / dim]]);
         family.thermal(a) *= factor;
         for (unsigned int b = 0; b < family.thermal.size() && factor != 1.; ++b)
           family.stiffness(a, b) *= factor;

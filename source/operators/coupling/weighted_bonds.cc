@@ -6,11 +6,11 @@
 namespace PeriDeal
 {
   template <int dim>
-  WeightedBonds<dim>::WeightedBonds(Nodes<dim>                      &nodes,
-                                    const BodyParameters<dim>       &body,
-                                    const Zone<dim>                 &zone,
-                                    std::unique_ptr<const Weighting> weighting)
-    : WeightedCoupling<dim>(nodes, body, zone, std::move(weighting))
+  WeightedBonds<dim>::WeightedBonds(Nodes<dim>                &nodes,
+                                    const BodyParameters<dim> &body,
+                                    const Zone<dim>           &zone,
+                                    const CouplingScheme       scheme)
+    : WeightedCoupling<dim>(nodes, body, zone, scheme)
     , bonds(this->own_families, body)
   {}
 
@@ -23,7 +23,7 @@ namespace PeriDeal
     for (Bond &bond : list)
       {
         const double weight =
-          this->weighting->of_bond(this->weights_now[node], this->weights_now[bond.neighbor]);
+          this->weighting.of_bond(this->weights_now[node], this->weights_now[bond.neighbor]);
         bond.weight *= weight;
         bond.intact *= weight;
         if (weight > 0.)
@@ -41,8 +41,8 @@ namespace PeriDeal
     neighbors.clear();
     bonds.bonds_of(node, list);
     for (const Bond &bond : list)
-      if (this->weighting->of_bond(this->weights_at_end[node],
-                                   this->weights_at_end[bond.neighbor]) > 0.)
+      if (this->weighting.of_bond(this->weights_at_end[node], this->weights_at_end[bond.neighbor]) >
+          0.)
         neighbors.push_back(bond.neighbor);
   }
 

@@ -12,24 +12,18 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>                      &nodes,
-                                          const BodyParameters<dim>       &body,
-                                          const Zone<dim>                 &zone,
-                                          std::unique_ptr<const Weighting> weighting)
-    : own_families(nodes, body, HaloAround::cells)
+  WeightedCoupling<dim>::WeightedCoupling(Nodes<dim>                &nodes,
+                                          const BodyParameters<dim> &body,
+                                          const Zone<dim>           &zone,
+                                          const CouplingScheme       scheme)
+    : Coupling<dim>(nodes, body, zone)
     , overlap(body.coupling.overlap * own_families.weights().horizon())
-    , weighting(std::move(weighting))
-    , weights_now(nodes, zone, overlap)
-    , weights_at_end(weights_now)
-    , zone(zone)
-    , follows(zone.follows_cracks())
+    , weighting(scheme)
+    , weights_now(nodes, this->zone, overlap)
+    , weights_at_end(nodes, this->zone_at(body.cracks.end_time), overlap)
   {
-    const CrackHistory<dim> &history = own_families.cracks().history();
-    Zone<dim>                at_end  = zone;
-    at_end.set_cracks(history.pieces(body.cracks.end_time));
-    weights_at_end.set(at_end);
-    this->zone.set_cracks(history.pieces(history.representative(0.)));
-    weights_now.set(follows ? this->zone : at_end);
+    if (!zone.follows_cracks())
+      weights_now = weights_at_end;
     if (!zone.follows_stretches()) // else nodes may join anywhere
       throw_if_zone_empty(weights_at_end.n_owned_in_zone(), nodes.communicator());
   }
@@ -38,7 +32,7 @@ namespace PeriDeal
   template <int dim>
   bool WeightedCoupling<dim>::change_cell(const Cell &cell, FullMatrix<double> &stiffness) const
   {
-    const double kept = weighting->of_cell(weights_now.mean(cell));
+    const double kept = weighting.of_cell(weights_now.mean(cell));
     if (kept == 1.)
       return false;
     stiffness *= kept;
@@ -52,7 +46,7 @@ namespace PeriDeal
     const unsigned int n_components = stiffness.m() / cell->n_vertices();
     bool               changed      = false;
     for (unsigned int a = 0; a < stiffness.m(); ++a)
-      if (const double kept = weighting->of_cell_row(weights_now.at(cell, a / n_components));
+      if (const double kept = weighting.of_cell_row(weights_now.at(cell, a / n_components));
           kept != 1.)
         {
           changed = true;
@@ -64,23 +58,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool WeightedCoupling<dim>::symmetric() const
-  {
-    return weighting->symmetric();
-  }
-
-
-  template <int dim>
   std::vector<BoundingBox<dim>> WeightedCoupling<dim>::joining_by(const double time) const
   {
     std::vector<BoundingBox<dim>> boxes;
-    if (!follows)
+    if (!this->zone_follows_cracks())
       return boxes;
-    Zone<dim> then = zone;
-    then.set_cracks(own_families.cracks().history().pieces(time));
+    const Zone<dim> then = this->zone_at(time);
     auto changes = own_families.cracks().history().changes(own_families.cracks().now(), time);
     for (BoundingBox<dim> &box : changes)
-      box.extend(zone.width() + overlap + own_families.nodes().smallest_spacing());
+      box.extend(then.width() + overlap + own_families.nodes().smallest_spacing());
     for (unsigned int i = 0; i < own_families.nodes().n_local(); ++i)
       {
         const Point<dim> &p = own_families.nodes().position(i);
@@ -97,25 +83,11 @@ namespace PeriDeal
   template <int dim>
   void WeightedCoupling<dim>::join(const double time)
   {
-    zone.set_cracks(own_families.cracks().history().pieces(time));
-    if (follows)
-      weights_now.set(zone);
+    this->zone = this->zone_at(time);
+    if (this->zone_follows_cracks())
+      weights_now.set(this->zone);
   }
 
-
-  template <int dim>
-  void WeightedCoupling<dim>::apply_change(const ChangeSet<dim> &change)
-  {
-    join(change.to);
-    own_families.cracks().apply_change(change);
-  }
-
-
-  template <int dim>
-  bool WeightedCoupling<dim>::in_zone(const unsigned int node) const
-  {
-    return weights_now[node] > 0.;
-  }
 
   template <int dim>
   std::size_t WeightedCoupling<dim>::memory_consumption() const

@@ -2,17 +2,16 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/std_cxx20/iota_view.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
-#include <perideal/base/node_loops.h>
 #include <perideal/base/user_error.h>
 #include <perideal/base/worst_trip.h>
 #include <perideal/bonds/fictitious_nodes.h>
 #include <perideal/laws/interface.h>
 #include <perideal/operators/diffusion/bond_operator.h>
 #include <perideal/operators/diffusion/heat_content.h>
+#include <perideal/operators/lattice/cut_bonds.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/not_positive.h>
 
@@ -42,28 +41,32 @@ namespace PeriDeal
 
   template <int dim>
   BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body)
-    : DiffusionOperatorBase<dim>(body,
-                                 0.,
-                                 nullptr,
-                                 [this](Vector &vector) {
-                                   for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
-                                     vector.local_element(i) = position_noise(position(i));
-                                 })
+    : FieldOperator<dim>(body,
+                         0.,
+                         nullptr,
+                         [this](Vector &vector) {
+                           for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+                             vector.local_element(i) = position_noise(position(i));
+                         })
     , families(nodes.find_parts(body.boundary_conditions), body)
     , bonds(families, body)
     , constraints(bonds, body)
     , loads(nodes, constraints, body)
-    , outside(bonds)
+    , bond_term(bonds, constraints, body.boundary_conditions)
+    , side_term(loads)
     , factors(bonds, body.peridynamics)
   {
     this->set_layout(nodes.partitioner());
-    if (constraints.any_slave())
-      this->initialize_vector(scratch);
+    this->set_parts(constraints, loads, {&bond_term, &side_term});
     find_capacity(nullptr);
     if (factors.any())
       factors.find(factors.nodes());
     choose_form(body.peridynamics.form);
-    find_diagonal();
+    const Rows all  = this->all_rows();
+    const auto sums = this->take_rows(all);
+    throw_if_isolated(all);
+    bounds.set(this->largest_rate(all, sums));
+    constraints.mask(stiffness_diagonal, 1.);
   }
 
 
@@ -73,10 +76,10 @@ namespace PeriDeal
     std::string reason;
     const bool  suits   = lattice_form_suits(bonds, reason);
     const bool  lattice = takes_lattice_form(wanted, suits ? "" : reason, true);
-    form                = lattice ? make_lattice_form(bonds) : make_stored_form(bonds);
-    note                = lattice ? "lattice stencil, no stored bonds but corrections" :
-                          suits   ? "stored bonds, as asked" :
-                                    "stored bonds, because " + reason;
+    bond_term.take(lattice ? make_lattice_form(bonds) : make_stored_form(bonds), this->layout);
+    note = lattice ? "lattice stencil, no stored bonds but corrections" :
+           suits   ? "stored bonds, as asked" :
+                     "stored bonds, because " + reason;
   }
 
 
@@ -110,13 +113,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  template <typename Rows>
   void BondOperator<dim>::throw_if_isolated(const Rows &rows) const
   {
     std::string message;
     for (const unsigned int i : rows)
-      if (message.empty() && !(stiffness_diagonal.local_element(i) > 0.) &&
-          constraints.kind(i) == NodeConstraints<dim>::free)
+      if (message.empty() && !(bond_term.sum_of(i) > 0.) && counts(i))
         message =
           "The node at " + this->place_of(i) +
           " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section "
@@ -126,130 +127,26 @@ namespace PeriDeal
 
 
   template <int dim>
-  template <typename Rows>
-  double BondOperator<dim>::largest_rate(const Rows &rows) const
-  {
-    double rate = 0.;
-    for (const unsigned int i : rows)
-      if (constraints.kind(i) == NodeConstraints<dim>::free)
-        rate = std::max(rate, 2. * stiffness_diagonal.local_element(i) / capacity.local_element(i));
-    return Utilities::MPI::max(rate, bonds.nodes().communicator());
-  }
-
-
-  template <int dim>
-  void BondOperator<dim>::find_diagonal()
-  {
-    const std_cxx20::ranges::iota_view<unsigned int, unsigned int> all(0u, bonds.nodes().n_owned());
-    n_own_bonds = form->row_sums(stiffness_diagonal.begin());
-    throw_if_isolated(all);
-    for (const auto &load : loads.with_coefficient())
-      stiffness_diagonal.local_element(load.node) += load.coefficient;
-    bounds.set(largest_rate(all));
-    constraints.mask(stiffness_diagonal, 1.);
-  }
-
-
-  template <int dim>
-  void BondOperator<dim>::apply_then(Vector &y, const Vector &x, const RowsAction &finish) const
-  {
-    ++this->applications;
-    const Vector *input = &x;
-    if (constraints.any_slave())
-      {
-        scratch = x;
-        constraints.distribute_homogeneous(scratch);
-        input = &scratch;
-      }
-    input->update_ghost_values();
-    const double *const beyond  = outside.homogeneous_values(*input);
-    double             &entered = this->entering_now;
-    entered                     = loads.through_transfer(*input);
-    outside.add_to(entered, *input);
-    form->apply(y.begin(),
-                input->begin(),
-                beyond,
-                [&](const unsigned int begin, const unsigned int end) {
-                  loads.add_transfer(y, *input, begin, end);
-                  entered += constraints.sum(y, begin, end);
-                  constraints.mask(y, 0., begin, end);
-                  finish(begin, end);
-                });
-    input->set_ghost_state(false);
-  }
-
-
-  template <int dim>
-  void BondOperator<dim>::residual_then(Vector           &r,
-                                        const Vector     &u,
-                                        const double      t,
-                                        const RowsAction &finish) const
-  {
-    ++this->applications;
-    u.update_ghost_values();
-    const double *const beyond   = outside.values(u, t);
-    const double *const constant = loads.constant();
-    const bool          vary     = loads.vary();
-    double             *values   = r.begin();
-    double             &entered  = this->entering_now;
-    entered                      = loads.through_transfer(u);
-    outside.add_to(entered, u);
-    entered = entered + loads.through_slaves(t) + loads.constant_sum();
-    form->apply(values, u.begin(), beyond, [&](const unsigned int begin, const unsigned int end) {
-      loads.add_transfer(r, u, begin, end);
-      entered += constraints.sum(r, begin, end);
-      if (constant != nullptr)
-        NodeLoops::subtract_from(values + begin, constant + begin, end - begin);
-      else
-        NodeLoops::negate(values + begin, end - begin);
-      constraints.mask(r, 0., begin, end);
-      if (!vary)
-        finish(begin, end);
-    });
-    u.set_ghost_state(false);
-    if (vary)
-      {
-        entered += loads.add_to(r, t);
-        constraints.mask(r);
-        finish(0, r.locally_owned_size());
-      }
-  }
-
-
-  template <int dim>
-  bool BondOperator<dim>::has_steady_state() const
-  {
-    return constraints.any_prescribed() || body.boundary_conditions.transfers_fix_level() ||
-           !body.boundary_conditions.dirichlet.empty();
-  }
-
-
-  template <int dim>
   bool BondOperator<dim>::apply_change(const ChangeSet<dim> &change)
   {
     bonds.cracks().apply_change(change);
     if (change.cuts.empty())
       return false;
-    std::vector<unsigned int> rows =
-      bonds.neighbors().nodes_near(change.cuts, bonds.weights().reach());
+    Rows rows = bonds.neighbors().nodes_near(change.cuts, bonds.weights().reach());
     if (factors.any())
       {
         factors.find(rows);
         rows = bonds.neighbors().nodes_near(change.cuts, 2. * bonds.weights().reach());
       }
     constraints.update(bonds, body);
-    form->update_rows(rows, stiffness_diagonal.begin());
-    outside.update(rows);
+    bond_term.update_rows(rows);
+    const auto sums = this->take_rows(rows);
     if (bonds.cracks().broken().empty()) // damage may leave nodes alone, that keep their heat
       throw_if_isolated(rows);
-    for (const auto &load : loads.with_coefficient())
-      if (std::binary_search(rows.begin(), rows.end(), load.node))
-        stiffness_diagonal.local_element(load.node) += load.coefficient;
     // Rates can have grown. Where bonds are only cut, the old bounds still hold.
-    if (factors.any() || this->history.may_close() || !symmetric())
-      bounds.set(std::max(bounds.safe(), largest_rate(rows)));
+    if (factors.any() || this->history.may_close() || !this->symmetric())
+      bounds.set(std::max(bounds.safe(), this->largest_rate(rows, sums)));
     constraints.mask(stiffness_diagonal, 1.);
-    n_own_bonds = -1.;
     return true;
   }
 
@@ -278,11 +175,11 @@ namespace PeriDeal
       return;
     if (scaled)
       factors.find(factors.nodes());
-    std::vector<unsigned int> rows;
+    Rows rows;
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
       if (bonds.near_crack(i))
         rows.push_back(i);
-    form->update_rows(rows, stiffness_diagonal.begin());
+    bond_term.update_rows(rows);
   }
 
 
@@ -298,96 +195,47 @@ namespace PeriDeal
         u.update_ghost_values();
         bonds.conductivities().take_at(u);
         u.set_ghost_state(false);
-        form->update_conductivities(stiffness_diagonal.begin());
-        outside.update();
+        bond_term.update_conductivities();
         update_crack_sides();
         constraints.update(bonds, body);
-        for (const auto &load : loads.with_coefficient())
-          stiffness_diagonal.local_element(load.node) += load.coefficient;
       }
-    bounds.set(largest_rate(
-      std_cxx20::ranges::iota_view<unsigned int, unsigned int>(0u, bonds.nodes().n_owned())));
+    const Rows all = this->all_rows();
+    bounds.set(this->largest_rate(all, this->take_rows(all)));
     constraints.mask(stiffness_diagonal, 1.);
   }
 
 
   template <int dim>
-  void BondOperator<dim>::add_crack_heat(const Vector &u, Balance &balance) const
+  void BondOperator<dim>::add_crack_heat(Balance &balance, const Vector &u) const
   {
-    const Nodes<dim>                               &nodes = bonds.nodes();
-    std::vector<typename DiffusionBonds<dim>::Bond> family;
-    std::vector<std::pair<unsigned int, int>>       crossed;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        if (!bonds.near_crack(i))
-          continue;
-        bonds.bonds_of(i, family);
-        for (const auto &bond : family)
-          if (bond.cut && bond.weight != 0.)
-            {
-              // A bond between two real nodes comes up at both of its ends; with a self term they
-              // differ.
-              const bool   real  = bond.neighbor < nodes.n_local();
-              const double other = real ? u.local_element(bond.neighbor) :
-                                          outside.last_values()[bond.neighbor - nodes.n_local()];
-              const double heat  = (real ? 0.5 : 1.) * bond.weight * (other - u.local_element(i));
-              bonds.cracks().crossed_cracks(i, bond.neighbor, crossed);
-              for (const auto &[crack, side] : crossed)
-                balance.cracks[crack] += side * heat;
-            }
-      }
+    u.update_ghost_values();
+    add_heat_of_cut_bonds(
+      families,
+      u,
+      [&](const unsigned int i, auto &family) { bonds.bonds_of(i, family); },
+      [&](const unsigned int fictitious) { return bond_term.value_beyond(fictitious); },
+      balance);
+    u.set_ghost_state(false);
   }
 
 
   template <int dim>
-  void BondOperator<dim>::find_flows(Balance      &balance,
-                                     Vector       &heat,
-                                     const Vector &u,
-                                     const double  t) const
+  double BondOperator<dim>::content(const Vector &u) const
   {
-    const Nodes<dim> &nodes      = bonds.nodes();
-    const auto       &conditions = body.boundary_conditions;
-    Vector            entering;
-    this->initialize_vector(entering);
-    u.update_ghost_values();
-    form->apply(heat.begin(), u.begin(), outside.values(u, t));
-    loads.add_transfer(heat, u, 0, nodes.n_owned());
-    loads.add_to(entering, t);
-    heat -= entering;
-
-    for (const types::boundary_id side : conditions.symmetry)
-      balance.sides[conditions.name_of(side)];
-    // In a prescribed node it has come in through the node's side.
-    for (const auto &entry : constraints.prescribed_nodes())
-      balance.sides[entry.condition->name] += heat.local_element(entry.node);
-    outside.add_to(balance, u, constraints, conditions);
-    loads.add_to(balance, u, t);
-    if (body.cracks.conduct())
-      add_crack_heat(u, balance);
+    const Nodes<dim> &nodes = bonds.nodes();
+    double            heat  = 0.;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      balance.content +=
-        nodes.volume(i) * heat_content(body.material, nodes.position(i), u.local_element(i));
-    u.set_ghost_state(false);
+      heat += nodes.volume(i) * heat_content(body.material, nodes.position(i), u.local_element(i));
+    return heat;
   }
 
 
   template <int dim>
   OperatorSize BondOperator<dim>::size() const
   {
-    const MPI_Comm communicator = bonds.nodes().communicator();
-    if (n_own_bonds < 0.)
-      {
-        std::vector<double> sums(bonds.nodes().n_owned());
-        n_own_bonds = form->row_sums(sums.data());
-      }
-    OperatorSize size = DiffusionOperatorBase<dim>::size();
-    size.bonds =
-      static_cast<unsigned long long>(std::llround(Utilities::MPI::sum(n_own_bonds, communicator)));
-    size.nonzeros = Utilities::MPI::sum(form->n_stored(), communicator);
+    OperatorSize size = FieldOperator<dim>::size();
     size.memory += families.memory_consumption() + bonds.memory_consumption() +
-                   bonds.nodes().memory_consumption() + form->memory_consumption() +
-                   loads.memory_consumption() + scratch.memory_consumption();
-    size.form = form->name();
+                   bonds.nodes().memory_consumption();
     return size;
   }
 
@@ -429,63 +277,50 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondOperator<dim>::surrogate(TrilinosWrappers::SparseMatrix &matrix) const
+  void BondOperator<dim>::make_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
     const Nodes<dim> &nodes = bonds.nodes();
-    const IndexSet   &owned = nodes.dof_handler().locally_owned_dofs();
-
-    // Which columns are free has to be known of ghosts too.
-    Vector free_nodes;
-    this->initialize_vector(free_nodes);
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      free_nodes.local_element(i) = constraints.kind(i) == NodeConstraints<dim>::free ? 1. : 0.;
-    free_nodes.update_ghost_values();
+    Vector            diagonal(nodes.partitioner()); // of sides and fictitious nodes
+    side_term.add_diagonal(diagonal, this->all_rows());
 
     std::vector<typename DiffusionBonds<dim>::Bond> family;
     std::vector<unsigned int>                       starts{0};
-    std::vector<double>                             of_outside(nodes.n_owned(), 0.);
     std::vector<std::pair<unsigned int, double>>    entries;
     std::vector<types::global_dof_index>            columns;
     std::vector<double>                             values;
-    TrilinosWrappers::SparsityPattern               pattern(owned,
+    TrilinosWrappers::SparsityPattern pattern(nodes.dof_handler().locally_owned_dofs(),
                                               nodes.communicator(),
                                               nodes.lattice() ? 2 * dim + 1 : 12);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         columns.assign(1, nodes.partitioner()->local_to_global(i));
-        if (free_nodes.local_element(i) > 0.)
-          {
-            bonds.nearest_bonds_of(i, family);
-            for (const auto &bond : family)
-              if (const double c =
-                    neighbor_conductance(bonds, body.material.interface_rule, i, bond);
-                  c > 0.)
+        double of_outside = 0.;
+        family.clear();
+        if (counts(i))
+          bonds.nearest_bonds_of(i, family);
+        for (const auto &bond : family)
+          if (const double c = neighbor_conductance(bonds, body.material.interface_rule, i, bond);
+              c > 0.)
+            {
+              if (bond.neighbor >= nodes.n_local())
                 {
-                  if (bond.neighbor >= nodes.n_local())
-                    {
-                      // A fictitious node holds its neighbours as far as it does not follow its
-                      // mirror.
-                      of_outside[i] +=
-                        (1. - bonds.neighbors().outside()[bond.neighbor - nodes.n_local()].sign) *
-                        c;
-                      continue;
-                    }
-                  entries.emplace_back(bond.neighbor, c);
-                  columns.push_back(nodes.partitioner()->local_to_global(bond.neighbor));
+                  // A fictitious node holds its neighbours as far as it does not follow its mirror.
+                  of_outside +=
+                    (1. - bonds.neighbors().outside()[bond.neighbor - nodes.n_local()].sign) * c;
+                  continue;
                 }
-          }
+              entries.emplace_back(bond.neighbor, c);
+              columns.push_back(nodes.partitioner()->local_to_global(bond.neighbor));
+            }
+        diagonal.local_element(i) += of_outside;
         pattern.add_entries(columns[0], columns.begin(), columns.end());
         starts.push_back(static_cast<unsigned int>(entries.size()));
       }
     pattern.compress();
     matrix.reinit(pattern);
-    std::vector<double> coefficients(nodes.n_owned(), 0.);
-    for (const auto &load : loads.with_coefficient())
-      if (free_nodes.local_element(load.node) > 0.)
-        coefficients[load.node] += load.coefficient;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        double diag = coefficients[i] + of_outside[i];
+        double diag = diagonal.local_element(i);
         columns.assign(1, nodes.partitioner()->local_to_global(i));
         values.assign(1, 0.);
         for (unsigned int k = starts[i]; k < starts[i + 1]; ++k)
@@ -493,10 +328,10 @@ namespace PeriDeal
             const auto [j, c] = entries[k];
             diag += c;
             columns.push_back(nodes.partitioner()->local_to_global(j));
-            values.push_back(free_nodes.local_element(j) > 0. ? -c : 0.);
+            values.push_back(-c);
           }
         // A node without near neighbours keeps its own diagonal, so that the matrix stays regular.
-        values[0] = diag > 0. ? diag : stiffness_diagonal.local_element(i);
+        values[0] = diag > 0. ? diag : bond_term.sum_of(i);
         matrix.set(columns[0], columns.size(), columns.data(), values.data());
       }
     matrix.compress(VectorOperation::insert);

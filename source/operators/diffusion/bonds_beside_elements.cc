@@ -3,8 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/base/matrix_rows.h>
 #include <perideal/operators/diffusion/bonds_beside_elements.h>
+#include <perideal/operators/lattice/cut_bonds.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace PeriDeal
     : coupled(std::move(coupling))
     , factors(factors)
     , layout(coupled->families().nodes().partitioner())
-    , in_form(coupled->has_form())
+    , in_form(coupled->bonds_of_form() != nullptr)
   {}
 
 
@@ -63,11 +63,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename BondsBesideElements<dim>::Rows BondsBesideElements<dim>::rows(
+  typename BondsBesideElements<dim>::Conductances BondsBesideElements<dim>::rows(
     const std::vector<unsigned int> &nodes) const
   {
     std::vector<typename Coupling<dim>::Bond> bonds;
-    Rows                                      rows(nodes.size());
+    Conductances                              rows(nodes.size());
     for (std::size_t k = 0; k < nodes.size(); ++k)
       {
         coupled->bonds_of(nodes[k], bonds);
@@ -89,14 +89,14 @@ namespace PeriDeal
       return;
     std::vector<unsigned int> nodes(layout->locally_owned_size());
     std::iota(nodes.begin(), nodes.end(), 0);
-    add(matrix, nodes, rows(nodes));
+    add_rows(matrix, nodes, rows(nodes));
   }
 
 
   template <int dim>
-  void BondsBesideElements<dim>::add(TrilinosWrappers::SparseMatrix  &matrix,
-                                     const std::vector<unsigned int> &nodes,
-                                     const Rows                      &rows) const
+  void BondsBesideElements<dim>::add_rows(TrilinosWrappers::SparseMatrix  &matrix,
+                                          const std::vector<unsigned int> &nodes,
+                                          const Conductances              &rows) const
   {
     std::vector<types::global_dof_index> columns;
     std::vector<double>                  values;
@@ -118,11 +118,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename BondsBesideElements<dim>::Rows BondsBesideElements<dim>::apply_change(
+  typename BondsBesideElements<dim>::Conductances BondsBesideElements<dim>::apply_change(
     const ChangeSet<dim>            &change,
     const std::vector<unsigned int> &nodes)
   {
-    Rows old;
+    Conductances old;
     if (!in_form)
       old = rows(nodes);
     coupled->apply_change(change);
@@ -133,13 +133,13 @@ namespace PeriDeal
 
   template <int dim>
   void BondsBesideElements<dim>::add_changes(const std::vector<unsigned int> &nodes,
-                                             const Rows                      &old,
+                                             const Conductances              &old,
                                              TrilinosWrappers::SparseMatrix  &matrix,
                                              RowSet                          &touched) const
   {
     if (in_form)
       return;
-    Rows                           rows = this->rows(nodes);
+    Conductances                   rows = this->rows(nodes);
     std::map<unsigned int, double> change;
     for (std::size_t k = 0; k < nodes.size(); ++k)
       {
@@ -160,7 +160,7 @@ namespace PeriDeal
         if (!rows[k].empty())
           touched.insert(nodes[k]);
       }
-    add(matrix, nodes, rows);
+    add_rows(matrix, nodes, rows);
   }
 
 
@@ -180,12 +180,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondsBesideElements<dim>::make_form()
+  void BondsBesideElements<dim>::make_form(const OperatorForm wanted)
   {
     set_form_factors();
-    form = coupled->make_form();
-    form_sums.resize(layout->locally_owned_size());
-    form->row_sums(form_sums.data());
+    const auto &bonds = *coupled->bonds_of_form();
+    this->take(takes_lattice_form(wanted, "", true) ? make_lattice_form(bonds) :
+                                                      make_stored_form(bonds),
+               layout);
   }
 
 
@@ -194,7 +195,7 @@ namespace PeriDeal
                                              RowSet                          &touched)
   {
     set_form_factors();
-    form->update_rows(nodes, form_sums.data());
+    this->update_rows(nodes);
     for (const unsigned int i : nodes)
       touched.insert(i);
   }
@@ -208,74 +209,7 @@ namespace PeriDeal
     std::vector<double> list(coupled->families().nodes().n_local());
     for (unsigned int i = 0; i < list.size(); ++i)
       list[i] = factors.at(i);
-    coupled->set_form_factors(std::move(list));
-  }
-
-
-  template <int dim>
-  void BondsBesideElements<dim>::take_remainder(const TrilinosWrappers::SparseMatrix &matrix)
-  {
-    remainder   = Remainder();
-    double size = 0.;
-    for_each_entry(matrix, [&](const unsigned int, const auto, const double value) {
-      size = std::max(size, std::abs(value));
-    });
-    // What is left of two equal terms is round-off, another on each number of processes.
-    const double nothing = 1e-14 * Utilities::MPI::max(size, layout->get_mpi_communicator());
-    for_each_entry(matrix, [&](const unsigned int i, const auto column, const double value) {
-      if (std::abs(value) <= nothing)
-        return;
-      if (remainder.rows.empty() || remainder.rows.back() != i)
-        {
-          remainder.rows.push_back(i);
-          remainder.starts.push_back(remainder.columns.size());
-        }
-      remainder.columns.push_back(layout->global_to_local(column));
-      remainder.values.push_back(value);
-    });
-    remainder.starts.push_back(remainder.columns.size());
-  }
-
-
-  template <int dim>
-  void BondsBesideElements<dim>::add_remainder(Vector            &y,
-                                               const Vector      &x,
-                                               const unsigned int begin,
-                                               const unsigned int end) const
-  {
-    const auto first = std::lower_bound(remainder.rows.begin(), remainder.rows.end(), begin);
-    for (auto row = first; row != remainder.rows.end() && *row < end; ++row)
-      {
-        const std::size_t k   = row - remainder.rows.begin();
-        double            sum = 0.;
-        for (unsigned int e = remainder.starts[k]; e < remainder.starts[k + 1]; ++e)
-          sum += remainder.values[e] * x.local_element(remainder.columns[e]);
-        y.local_element(*row) += sum;
-      }
-  }
-
-
-  template <int dim>
-  void BondsBesideElements<dim>::multiply_then(Vector                     &y,
-                                               const Vector               &x,
-                                               const Operator::RowsAction &finish) const
-  {
-    x.update_ghost_values();
-    form->apply(y.begin(),
-                x.begin(),
-                nullptr,
-                [&](const unsigned int begin, const unsigned int end) {
-                  add_remainder(y, x, begin, end);
-                  finish(begin, end);
-                });
-    x.set_ghost_state(false);
-  }
-
-
-  template <int dim>
-  double BondsBesideElements<dim>::sum_of(const unsigned int node) const
-  {
-    return in_form ? form_sums[node] : 0.;
+    coupled->bonds_of_form()->factors().set(std::move(list), 1, true);
   }
 
 
@@ -321,23 +255,13 @@ namespace PeriDeal
   template <int dim>
   void BondsBesideElements<dim>::add_heat(const Vector &u, Balance &balance) const
   {
-    std::vector<typename Coupling<dim>::Bond> bonds;
-    std::vector<std::pair<unsigned int, int>> crossed;
-    const Families<dim>                      &families = coupled->families();
     u.update_ghost_values();
-    for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-      if (coupled->in_zone(i) && families.near_crack(i))
-        {
-          coupled->bonds_of(i, bonds);
-          for (const auto &bond : bonds)
-            if (bond.cut && bond.weight > 0.)
-              {
-                families.cracks().crossed_cracks(i, bond.neighbor, crossed);
-                for (const auto &[crack, side] : crossed) // each bond is seen from both of its ends
-                  balance.cracks[crack] += 0.5 * side * bond.weight *
-                                           (u.local_element(bond.neighbor) - u.local_element(i));
-              }
-        }
+    add_heat_of_cut_bonds(
+      coupled->families(),
+      u,
+      [&](const unsigned int i, auto &bonds) { coupled->bonds_of(i, bonds); },
+      [](const unsigned int) { return 0.; }, // there are no fictitious nodes
+      balance);
     u.set_ghost_state(false);
   }
 
@@ -345,6 +269,12 @@ namespace PeriDeal
   template <int dim>
   void BondsBesideElements<dim>::add_to(OperatorSize &size) const
   {
+    size.memory += coupled->memory_consumption() + coupled->families().nodes().memory_consumption();
+    if (in_form)
+      {
+        BondTerm::add_to(size);
+        return;
+      }
     if (recount)
       {
         std::vector<typename Coupling<dim>::Bond> bonds;
@@ -360,12 +290,6 @@ namespace PeriDeal
         recount = false;
       }
     size.bonds = n_bonds;
-    size.memory += coupled->memory_consumption() + coupled->families().nodes().memory_consumption();
-    if (!in_form)
-      return;
-    size.form     = form->name();
-    size.nonzeros = Utilities::MPI::sum(remainder.values.size() + form->n_stored(),
-                                        layout->get_mpi_communicator());
   }
 
 

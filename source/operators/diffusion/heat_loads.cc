@@ -5,8 +5,6 @@
 
 #include <perideal/operators/diffusion/heat_loads.h>
 
-#include <numeric>
-
 namespace PeriDeal
 {
   using namespace dealii;
@@ -17,12 +15,9 @@ namespace PeriDeal
                             const BoundaryConditions<dim>                            &conditions,
                             const Expression                                         &source,
                             const HangingNodes<dim>                                  &hanging)
-    : dofs(dofs)
-    , conditions(conditions)
-    , source(source)
+    : DiffusionLoads<dim>(layout, conditions, source)
+    , dofs(dofs)
     , hanging(hanging)
-    , any_source(!source.is_constant() || source.value(Point<dim>()) != 0.)
-    , varies(source.depends_on_time() || conditions.transfers_depend_on_time())
     , faces(dofs, conditions)
     , of_parts(unknowns_of_parts(dofs,
                                  conditions,
@@ -34,20 +29,10 @@ namespace PeriDeal
                   QGauss<dim - 1>(dofs.get_fe().degree + 1),
                   update_values | update_quadrature_points | update_JxW_values)
     , indices(dofs.get_fe().n_dofs_per_cell())
-    , loads(layout)
   {
-    if (!varies)
-      assemble(0.);
+    if (!this->varies)
+      this->find(0.);
     find_coefficients();
-  }
-
-
-  template <int dim>
-  const Vector &HeatLoads<dim>::at(const double t) const
-  {
-    if (varies)
-      assemble(t);
-    return loads;
   }
 
 
@@ -89,7 +74,6 @@ namespace PeriDeal
   template <int dim>
   void HeatLoads<dim>::assemble(const double t) const
   {
-    loads = 0.;
     for_each(
       [&](const auto &points) {
         for (const unsigned int q : points.quadrature_point_indices())
@@ -114,7 +98,6 @@ namespace PeriDeal
       });
     loads.compress(VectorOperation::add);
     hanging.condense(loads);
-    sum_of_loads = std::accumulate(loads.begin(), loads.end(), 0.);
   }
 
 
@@ -156,17 +139,7 @@ namespace PeriDeal
     hanging.condense(sums);
     for (unsigned int i = 0; i < sums.locally_owned_size(); ++i)
       if (sums.local_element(i) != 0.)
-        coefficients.emplace_back(i, sums.local_element(i));
-  }
-
-
-  template <int dim>
-  double HeatLoads<dim>::through_transfer(const Vector &u) const
-  {
-    double sum = 0.;
-    for (const auto &[unknown, coefficient] : coefficients)
-      sum -= coefficient * u.local_element(unknown);
-    return sum;
+        this->coefficients.emplace_back(i, sums.local_element(i));
   }
 
 

@@ -55,11 +55,8 @@ namespace PeriDeal
     : nodes(bonds.nodes())
     , kinds(nodes.n_local(), free)
   {
-    find_prescribed(body);
-    check_parts(bonds, body);
+    find_prescribed(bonds, body);
     find_slaves(bonds, body);
-    prescribed_exist = Utilities::MPI::max(prescribed_list.empty() ? 0 : 1, nodes.communicator()) >
-                       0;
     slaves_exist = Utilities::MPI::max(slaves.empty() ? 0 : 1, nodes.communicator()) > 0;
     if (slaves_exist)
       couple_slaves(nodes);
@@ -111,9 +108,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void NodeConstraints<dim>::find_prescribed(const BodyParameters<dim> &body)
+  void NodeConstraints<dim>::find_prescribed(const DiffusionBonds<dim> &bonds,
+                                             const BodyParameters<dim> &body)
   {
-    const auto &dirichlet = body.boundary_conditions.dirichlet;
+    const auto                                        &conditions = body.boundary_conditions;
+    const auto                                        &dirichlet  = conditions.dirichlet;
+    std::vector<typename PrescribedValues<dim>::Entry> list;
     if (body.peridynamics.has_layers())
       {
         AssertThrow(
@@ -124,7 +124,6 @@ namespace PeriDeal
         // Of a hole, which has no lattice rows, the nodes on it
         // and of parts that are no sides of the box
         std::set<std::pair<unsigned int, types::boundary_id>> own;
-        const auto                                           &conditions = body.boundary_conditions;
         for (const BoundaryShare &share : nodes.condition_shares())
           if (share.inside && conditions.side_of(share.id) >= 2 * dim)
             own.insert({share.node, share.id});
@@ -144,7 +143,7 @@ namespace PeriDeal
                                 conditions.holds_at(condition.id, foot) :
                               own.count({i, condition.id}) > 0)
                   {
-                    prescribed_list.push_back({i, &condition});
+                    list.push_back({i, nodes.position(i), &condition});
                     break;
                   }
               }
@@ -155,30 +154,18 @@ namespace PeriDeal
       // values.
       for (const auto &[node, condition] : first_sides(nodes, dirichlet))
         if (!body.peridynamics.has_fictitious_nodes() || !nodes.lattice() ||
-            !nodes.lattice()->at_centers ||
-            body.boundary_conditions.side_of(condition->id) >= 2 * dim)
-          prescribed_list.push_back({node, condition});
-    for (const Prescribed &entry : prescribed_list)
-      kinds[entry.node] = prescribed;
-  }
-
-
-  template <int dim>
-  void NodeConstraints<dim>::check_parts(const DiffusionBonds<dim> &bonds,
-                                         const BodyParameters<dim> &body) const
-  {
-    const BoundaryConditions<dim>  &conditions = body.boundary_conditions;
-    const auto                     &dirichlet  = conditions.dirichlet;
-    std::vector<unsigned long long> n_nodes(dirichlet.size(), 0), n_held(dirichlet.size(), 0);
+            !nodes.lattice()->at_centers || conditions.side_of(condition->id) >= 2 * dim)
+          list.push_back({node, nodes.position(node), condition});
+    for (const auto &entry : list)
+      kinds[entry.unknown] = prescribed;
+    std::vector<unsigned long long> n_nodes(dirichlet.size(), 0), n_outside(dirichlet.size(), 0);
     for (const BoundaryShare &share : nodes.condition_shares())
       for (std::size_t k = 0; k < dirichlet.size(); ++k)
         n_nodes[k] += share.inside && share.id == dirichlet[k].id ? 1 : 0;
-    for (const Prescribed &entry : prescribed_list)
-      ++n_held[entry.condition - dirichlet.data()];
     for (const FictitiousNode<dim> &node : bonds.neighbors().outside())
       for (const auto &term : node.terms)
-        ++n_held[term.condition - dirichlet.data()];
-    require_held_parts(conditions, dirichlet, n_nodes, n_held, "Dirichlet", nodes.communicator());
+        ++n_outside[term.condition - dirichlet.data()];
+    this->set_entries(std::move(list), conditions, n_nodes, n_outside, nodes.communicator());
   }
 
 
@@ -417,23 +404,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename NodeConstraints<dim>::Kind NodeConstraints<dim>::kind(const unsigned int node) const
-  {
-    return kinds[node];
-  }
-
-  template <int dim>
-  const std::vector<typename NodeConstraints<dim>::Prescribed>
-    &NodeConstraints<dim>::prescribed_nodes() const
-  {
-    return prescribed_list;
-  }
-
-  template <int dim>
   void NodeConstraints<dim>::distribute(Vector &u, const double t) const
   {
-    for (const Prescribed &entry : prescribed_list)
-      u.local_element(entry.node) = entry.condition->value.value(nodes.position(entry.node), t);
+    PrescribedValues<dim>::distribute(u, t);
     set_slaves(u, t, false);
   }
 
@@ -441,8 +414,8 @@ namespace PeriDeal
   template <int dim>
   void NodeConstraints<dim>::distribute_homogeneous(Vector &x) const
   {
-    for (const Prescribed &entry : prescribed_list)
-      x.local_element(entry.node) = 0.;
+    for (const auto &entry : this->entries())
+      x.local_element(entry.unknown) = 0.;
     set_slaves(x, 0., true);
   }
 

@@ -13,11 +13,11 @@ namespace PeriDeal
   NodeLoads<dim>::NodeLoads(const Nodes<dim>           &nodes,
                             const NodeConstraints<dim> &constraints,
                             const BodyParameters<dim>  &body)
-    : nodes(nodes)
+    : DiffusionLoads<dim>(nodes.partitioner(),
+                          body.boundary_conditions,
+                          body.initial_and_source.source)
+    , nodes(nodes)
     , constraints(constraints)
-    , source(body.initial_and_source.source)
-    , varies(source.depends_on_time() || body.boundary_conditions.transfers_depend_on_time())
-    , values_vary(body.boundary_conditions.depends_on_time())
   {
     using Constraints      = NodeConstraints<dim>;
     const bool  natural    = body.peridynamics.natural_fluxes();
@@ -42,58 +42,32 @@ namespace PeriDeal
     std::stable_sort(relaxing.begin(), relaxing.end(), [](const SideLoad &a, const SideLoad &b) {
       return a.node < b.node;
     });
-    if (varies)
-      return;
-    Vector loads(nodes.partitioner());
-    kept_sum = add_to(loads, 0.);
-    if (std::any_of(loads.begin(), loads.end(), [](const double load) { return load != 0.; }))
-      kept.swap(loads);
+    for (const SideLoad &load : relaxing)
+      this->coefficients.emplace_back(load.node, load.coefficient);
+    if (!this->varies)
+      this->find(0.);
   }
 
 
   template <int dim>
-  double NodeLoads<dim>::add_to(Vector &f, const double t) const
+  template <typename Visit>
+  void NodeLoads<dim>::for_each_source(const double t, const Visit &visit) const
   {
-    double     sum = 0.;
-    const auto add = [&](const unsigned int i, const double load) {
-      f.local_element(i) += load;
-      if (constraints.kind(i) == NodeConstraints<dim>::free)
-        sum += load;
-    };
-    if (!source.is_constant() || source.value(Point<dim>()) != 0.)
-      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-        add(i, nodes.volume(i) * source.value(nodes.position(i), t));
+    for (unsigned int i = 0; i < nodes.n_owned() && this->any_source; ++i)
+      if (constraints.kind(i) != NodeConstraints<dim>::slave)
+        visit(i, nodes.volume(i) * this->source.value(nodes.position(i), t));
+  }
+
+
+  template <int dim>
+  void NodeLoads<dim>::assemble(const double t) const
+  {
+    Vector &f = this->loads;
+    for_each_source(t,
+                    [&](const unsigned int i, const double heat) { f.local_element(i) += heat; });
     for (const auto *list : {&fluxes, &relaxing})
       for (const SideLoad &load : *list)
-        add(load.node, load.entering(t, 0.));
-    return sum;
-  }
-
-
-  template <int dim>
-  void NodeLoads<dim>::add_transfer(Vector            &y,
-                                    const Vector      &x,
-                                    const unsigned int begin,
-                                    const unsigned int end) const
-  {
-    for (auto load =
-           std::lower_bound(relaxing.begin(),
-                            relaxing.end(),
-                            begin,
-                            [](const SideLoad &a, const unsigned int b) { return a.node < b; });
-         load != relaxing.end() && load->node < end;
-         ++load)
-      y.local_element(load->node) += load->coefficient * x.local_element(load->node);
-  }
-
-
-  template <int dim>
-  double NodeLoads<dim>::through_transfer(const Vector &u) const
-  {
-    double sum = 0.;
-    for (const SideLoad &load : relaxing)
-      sum -= load.coefficient * u.local_element(load.node);
-    return sum;
+        f.local_element(load.node) += load.entering(t, 0.);
   }
 
 
@@ -113,9 +87,7 @@ namespace PeriDeal
     for (const auto *list : {&fluxes, &relaxing, &of_slaves})
       for (const SideLoad &load : *list)
         balance.sides[load.transfer->name] += load.entering(t, u.local_element(load.node));
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      if (constraints.kind(i) != NodeConstraints<dim>::slave)
-        balance.sources += nodes.volume(i) * source.value(nodes.position(i), t);
+    for_each_source(t, [&](const unsigned int, const double heat) { balance.sources += heat; });
   }
 
 

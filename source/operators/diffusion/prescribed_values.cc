@@ -56,8 +56,8 @@ namespace PeriDeal
                                           const HangingNodes<dim>             &hanging,
                                           const std::vector<PartUnknown<dim>> &parts)
   {
-    const auto                     &dirichlet = conditions.dirichlet;
-    std::vector<unsigned long long> n_nodes(dirichlet.size(), 0), n_held(dirichlet.size(), 0);
+    const auto &dirichlet = conditions.dirichlet;
+    Counts      n_nodes(dirichlet.size(), 0);
     // For each unknown the place in the list of the condition that holds: the one named first.
     std::map<unsigned int, std::pair<unsigned int, Point<dim>>> found;
     const auto                                                  hold =
@@ -73,27 +73,49 @@ namespace PeriDeal
       for (unsigned int k = 0; k < dirichlet.size(); ++k)
         if (dirichlet[k].id == unknown.id)
           hold(k, layout.local_to_global(unknown.node), unknown.position);
+    std::vector<Entry>        list;
     std::vector<unsigned int> prescribed;
     for (const auto &[unknown, entry] : found)
       {
-        entries.push_back({unknown, entry.second, &dirichlet[entry.first]});
+        list.push_back({unknown, entry.second, &dirichlet[entry.first]});
         prescribed.push_back(unknown);
-        ++n_held[entry.first];
       }
-    const MPI_Comm communicator = dofs.get_communicator();
-    require_held_parts(conditions, dirichlet, n_nodes, n_held, "Dirichlet", communicator);
+    set_entries(std::move(list),
+                conditions,
+                n_nodes,
+                Counts(dirichlet.size(), 0),
+                dofs.get_communicator());
     std::vector<unsigned int> not_free = prescribed;
     not_free.insert(not_free.end(), hanging.owned().begin(), hanging.owned().end());
     std::sort(not_free.begin(), not_free.end());
     this->set_held(std::move(not_free), std::move(prescribed));
-    on_any_process = Utilities::MPI::max(entries.empty() ? 0 : 1, communicator) > 0;
+  }
+
+
+  template <int dim>
+  void PrescribedValues<dim>::set_entries(std::vector<Entry>             list,
+                                          const BoundaryConditions<dim> &conditions,
+                                          const Counts                  &n_nodes,
+                                          Counts                         n_held,
+                                          const MPI_Comm                 communicator)
+  {
+    with_value = std::move(list);
+    for (const Entry &entry : with_value)
+      ++n_held[entry.condition - conditions.dirichlet.data()];
+    require_held_parts(conditions,
+                       conditions.dirichlet,
+                       n_nodes,
+                       n_held,
+                       "Dirichlet",
+                       communicator);
+    on_any_process = Utilities::MPI::max(with_value.empty() ? 0 : 1, communicator) > 0;
   }
 
 
   template <int dim>
   void PrescribedValues<dim>::distribute(Vector &u, const double t) const
   {
-    for (const Entry &entry : entries)
+    for (const Entry &entry : with_value)
       u.local_element(entry.unknown) = entry.condition->value.value(entry.position, t);
   }
 
@@ -101,7 +123,7 @@ namespace PeriDeal
   template <int dim>
   void PrescribedValues<dim>::add_to(std::map<std::string, double> &sides, const Vector &y) const
   {
-    for (const Entry &entry : entries)
+    for (const Entry &entry : with_value)
       sides[entry.condition->name] += y.local_element(entry.unknown);
   }
 

@@ -16,7 +16,7 @@ namespace PeriDeal
 
   template <int dim>
   PairBonds<dim>::PairBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds)
-    : ZoneBonds<dim>(bonds.families)
+    : ZoneBonds<dim>(bonds.families())
     , coupling(coupling)
     , of_lattice(bonds)
   {}

@@ -44,6 +44,9 @@ namespace PeriDeal
 
     virtual ~Coupling() = default;
 
+    Coupling(const Coupling &)            = delete;
+    Coupling &operator=(const Coupling &) = delete;
+
     /** Throws UserError for a body that cannot have any. */
     static void require(const BodyParameters<dim> &body);
 
@@ -97,21 +100,13 @@ namespace PeriDeal
     }
 
     /**
-     * The bonds are better kept as a form of their own than in a matrix. The same on all processes.
+     * Bonds that are better kept as a form of their own (BondForm) than in a matrix; null where
+     * they are not. The same on all processes.
      */
-    virtual bool has_form() const
-    {
-      return false;
-    }
-
-    /** All of the bonds as one operator. The coupling must outlive it. */
-    virtual std::unique_ptr<BondForm> make_form()
+    virtual DiffusionBonds<dim> *bonds_of_form()
     {
       return nullptr;
     }
-
-    /** Factors of owned nodes and ghosts, by whose mean the form multiplies bonds. */
-    virtual void set_form_factors(std::vector<double>) {}
 
     /** K is symmetric. */
     virtual bool symmetric() const
@@ -120,7 +115,10 @@ namespace PeriDeal
     }
 
     /** Nodes join the zone as cracks grow. The same on all processes. */
-    virtual bool zone_follows_cracks() const = 0;
+    bool zone_follows_cracks() const
+    {
+      return zone.follows_cracks();
+    }
 
     /**
      * Boxes around the nodes that join the zone on the way to the cracks of that representative
@@ -136,7 +134,11 @@ namespace PeriDeal
      * the cracks as they are then, their whole path included: bonds that join find themselves
      * broken where a crack has passed before. Collective.
      */
-    virtual void apply_change(const ChangeSet<dim> &change) = 0;
+    void apply_change(const ChangeSet<dim> &change)
+    {
+      join(change.to);
+      own_families.cracks().apply_change(change);
+    }
 
     /** Part of the bonds' strength that distorted cells leave. Collective. */
     virtual double kept_share() const
@@ -151,7 +153,10 @@ namespace PeriDeal
     virtual bool in_zone(const unsigned int node) const = 0;
 
     /** Of all nodes, whole. */
-    virtual const Families<dim> &families() const = 0;
+    const Families<dim> &families() const
+    {
+      return own_families;
+    }
 
     virtual std::size_t memory_consumption() const = 0;
 
@@ -160,6 +165,36 @@ namespace PeriDeal
      * Collective. Throws UserError where one is not positive.
      */
     virtual void take_conductivities_at(const Vector &) {}
+
+  protected:
+    using HasBonds = typename Families<dim>::HasBonds;
+
+    /**
+     * With the zone as it is with the first cracks.
+     * @param has_bonds as Families has it
+     *
+     * Adds the halo to the nodes. Collective.
+     */
+    Coupling(Nodes<dim>                &nodes,
+             const BodyParameters<dim> &body,
+             const Zone<dim>           &given,
+             const HasBonds            &has_bonds = {})
+      : own_families(nodes, body, HaloAround::cells, has_bonds)
+      , zone(given)
+    {
+      zone = zone_at(own_families.cracks().history().representative(0.));
+    }
+
+    /** The zone with the cracks of another time. */
+    Zone<dim> zone_at(const double time) const
+    {
+      Zone<dim> then = zone;
+      then.set_cracks(own_families.cracks().history().pieces(time));
+      return then;
+    }
+
+    Families<dim> own_families;
+    Zone<dim>     zone; // now
   };
 
 

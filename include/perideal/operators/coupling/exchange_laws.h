@@ -11,7 +11,6 @@
 #include <perideal/operators/lattice/bond_form.h>
 
 #include <array>
-#include <memory>
 #include <vector>
 
 namespace PeriDeal
@@ -22,7 +21,7 @@ namespace PeriDeal
    *   W v (v . (u_j - u_i)),  v = direction(xi),  W = w V_i V_j k,
    *
    * k the smallest stiffness(p) on the bond's way. LatticeExchange and MeshExchange take one of
-   * these laws; both have the same members, but for those of a form.
+   * these laws; both have the same members.
    */
 
   /** ch_a v_c of the corners a of a cell and the components c, the latter running faster. */
@@ -87,16 +86,14 @@ namespace PeriDeal
       return bonds.kept_fraction(node, neighbor, cut, true);
     }
 
-    /** Bonds everywhere, between equal cells, are better kept as a form than in a matrix. */
-    static constexpr bool has_form = true;
-
     /** Throws UserError for a form that bonds of a lattice cannot have. */
     void check_form(const LatticeBonds<dim> &of_lattice) const;
 
-    /** This law has to outlive it. */
-    std::unique_ptr<BondForm> make_form() const;
-
-    void set_form_factors(std::vector<double> factors);
+    /** Bonds that a form may be made of; they conduct. */
+    DiffusionBonds<dim> *conducting()
+    {
+      return &bonds;
+    }
 
     /** As Coupling: what cracks leave of a bond may depend on its conductivity. */
     void take_conductivities_at(const Vector &u)
@@ -175,7 +172,14 @@ namespace PeriDeal
       return kept;
     }
 
-    static constexpr bool has_form = false;
+    void check_form(const LatticeBonds<dim> &) const {}
+
+    DiffusionBonds<dim> *conducting()
+    {
+      return nullptr;
+    }
+
+    void take_conductivities_at(const Vector &) {}
 
     std::size_t memory_consumption() const
     {

@@ -4,13 +4,12 @@
 #pragma once
 
 #include <perideal/bonds/bond_pieces.h>
-#include <perideal/bonds/families.h>
 #include <perideal/laws/interface.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/coupling/breakable_zone.h>
 #include <perideal/operators/coupling/cell_stiffness.h>
+#include <perideal/operators/coupling/coupling.h>
 #include <perideal/scene/body_parameters.h>
-#include <perideal/scene/zone.h>
 
 #include <limits>
 #include <vector>
@@ -18,8 +17,8 @@
 namespace PeriDeal
 {
   /**
-   * The active bonds of an exchange on a lattice of equal cells, and the cells that they pass: what
-   * diffusion and elasticity have in common.
+   * A coupling by exchange on a lattice of equal cells, as far as diffusion and elasticity have it
+   * in common: its active bonds, and the cells that they pass.
    *
    * A bond has the strength w(xi) V_i V_j k, with k the smallest stiffness (conductivity) of the
    * cells on its way, and along the rim of a void no more than cells have to give: w(xi) V^2 k, V
@@ -30,10 +29,11 @@ namespace PeriDeal
    * On a graded mesh hanging nodes and others on the side of a larger cell have no bonds.
    */
   template <int dim>
-  class LatticeBonds : public BreakableZone<dim>
+  class LatticeBonds : public Coupling<dim>, public BreakableZone<dim>
   {
   public:
     using typename BreakableZone<dim>::Joining;
+    using typename Coupling<dim>::Cell;
     using Site = typename Lattice<dim>::Index;
 
     /** What the lattice has at a site and in the cell whose lowest corner that is. */
@@ -62,7 +62,7 @@ namespace PeriDeal
       typename BondPiece<dim>::Corners change; // over the square root of the length
     };
 
-    /** Adds the halo to the nodes. Collective. Throws UserError for a zone without nodes. */
+    /** Collective. Throws UserError for a zone without nodes. */
     LatticeBonds(Nodes<dim>                &nodes,
                  const BodyParameters<dim> &body,
                  const Zone<dim>           &zone,
@@ -89,9 +89,14 @@ namespace PeriDeal
     template <typename Visit>
     void for_each_full_passage(const Visit &visit) const;
 
+    BreakableZone<dim> *breakable() override
+    {
+      return this;
+    }
+
     const Families<dim> &families_of_bonds() const override
     {
-      return families;
+      return own_families;
     }
 
     double weight_of(const unsigned int node) const override
@@ -110,32 +115,38 @@ namespace PeriDeal
       return true;
     }
 
+    bool parts_cell(const Cell &cell) const override
+    {
+      return this->parts(cell);
+    }
+
     /** Nodes within one horizon that may join the zone. */
     void find_joining(const dealii::Point<dim> &place, std::vector<Joining> &list) const override;
     void join_nodes(const std::vector<Joining> &list) override;
 
-    /** As Coupling::possible_neighbors_of(). */
-    void possible_neighbors_of(const unsigned int node, std::vector<unsigned int> &neighbors) const;
+    void possible_neighbors_of(const unsigned int         node,
+                               std::vector<unsigned int> &neighbors) const override;
 
     /** Cells of lattice size only have bonds. */
-    bool is_of_lattice(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell) const;
+    bool is_of_lattice(const Cell &cell) const;
 
     /** Stiffness of a cell of the table, the smallest in it. */
     double stiffness_of(const Site &cell) const;
 
-    std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const;
-    void                                  join(const double time);
-    void                                  apply_change(const ChangeSet<dim> &change);
-    void                                  take_conductivities_at(const Vector &u);
-    bool                                  in_zone(const unsigned int node) const;
-    std::size_t                           memory_consumption() const;
+    std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
+    void                                  join(const double time) override;
+    void                                  take_conductivities_at(const Vector &u) override;
+    bool                                  in_zone(const unsigned int node) const override;
+    std::size_t                           memory_consumption() const override;
 
-    Families<dim>        families;
-    Zone<dim>            zone;
+    using Coupling<dim>::zone;
     std::vector<Offset>  offsets;
     std::vector<Passage> passages;
     Site                 reach{};
     bool                 plain = true; // no void, one stiffness, one cell size
+
+  protected:
+    using Coupling<dim>::own_families;
 
   private:
     void            find_offsets();
@@ -196,7 +207,7 @@ namespace PeriDeal
           return 0.;
         least = std::min(least, n_around / piece.cells.size());
       }
-    const double whole = families.nodes().lattice()->cell_volume(),
+    const double whole = own_families.nodes().lattice()->cell_volume(),
                  most  = lowest * offset.weight * std::min(volumes, least * whole * whole);
     if (stiffness.depends_on_temperature())
       return most * kept_at_contrast(highest / lowest);
@@ -258,7 +269,7 @@ namespace PeriDeal
   template <typename Visit>
   void LatticeBonds<dim>::for_each_full_passage(const Visit &visit) const
   {
-    const double volume = families.nodes().lattice()->cell_volume();
+    const double volume = own_families.nodes().lattice()->cell_volume();
     for (const Passage &passage : passages)
       {
         const Offset &offset = offsets[passage.offset];

@@ -3,9 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/coupling/exchange_laws.h>
-#include <perideal/operators/coupling/lattice_bonds.h>
 #include <perideal/scene/body_parameters.h>
 
 #include <vector>
@@ -26,7 +24,7 @@ namespace PeriDeal
    * ElasticBonds; which bonds are active: LatticeBonds.
    */
   template <int dim, typename Law>
-  class LatticeExchange : public Coupling<dim>
+  class LatticeExchange : public LatticeBonds<dim>
   {
   public:
     using typename Coupling<dim>::Bond;
@@ -35,44 +33,19 @@ namespace PeriDeal
     /** Collective. Throws UserError for a zone without nodes, and as Law::calibrate(). */
     LatticeExchange(Nodes<dim> &nodes, const BodyParameters<dim> &body, const Zone<dim> &zone);
 
-    BreakableZone<dim> *breakable() override
-    {
-      return &bonds;
-    }
-
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
-    void possible_neighbors_of(const unsigned int         node,
-                               std::vector<unsigned int> &neighbors) const override;
     bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
     bool finish_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool parts_cell(const Cell &cell) const override;
     bool leaves_nothing(const Cell &cell) const override;
-    bool has_form() const override;
-    std::unique_ptr<BondForm> make_form() override;
-    void                      set_form_factors(std::vector<double> factors) override;
-    bool                      zone_follows_cracks() const override
-    {
-      return bonds.zone.follows_cracks();
-    }
-    std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
-    void                                  join(const double time) override;
-    void                                  apply_change(const ChangeSet<dim> &change) override;
-    bool                                  in_zone(const unsigned int node) const override;
-    void                                  take_conductivities_at(const Vector &u) override;
-    const Families<dim>                  &families() const override
-    {
-      return bonds.families;
-    }
-    std::size_t memory_consumption() const override;
-
+    DiffusionBonds<dim> *bonds_of_form() override;
+    void                 take_conductivities_at(const Vector &u) override;
+    std::size_t          memory_consumption() const override;
 
   private:
-    using Site      = typename Lattice<dim>::Index;
-    using Direction = decltype(Law::direction({}));
+    using typename LatticeBonds<dim>::Site;
+    using LatticeBonds<dim>::own_families;
 
-    LatticeBonds<dim>      bonds;
-    Law                    law;
-    CellSurplus            surplus;
-    std::vector<Direction> directions; // by number of offset
+    Law         law;
+    CellSurplus surplus;
   };
 } // namespace PeriDeal

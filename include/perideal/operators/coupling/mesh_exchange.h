@@ -46,17 +46,11 @@ namespace PeriDeal
     void possible_neighbors_of(const unsigned int         node,
                                std::vector<unsigned int> &neighbors) const override;
     bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool zone_follows_cracks() const override;
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  join(const double time) override;
-    void                                  apply_change(const ChangeSet<dim> &change) override;
     bool                                  in_zone(const unsigned int node) const override;
     void                                  take_conductivities_at(const Vector &u) override;
-    const Families<dim>                  &families() const override
-    {
-      return own_families;
-    }
-    std::size_t memory_consumption() const override;
+    std::size_t                           memory_consumption() const override;
 
     /** sum s_b W_b over sum W_b. */
     double kept_share() const override;
@@ -100,10 +94,11 @@ namespace PeriDeal
     void take(const ZoneBond &bond, const double weight, const std::vector<PathPiece<dim>> &way);
     void find_strains();
 
-    Families<dim>                                     own_families;
+    using Coupling<dim>::own_families;
+    using Coupling<dim>::zone;
+
     Law                                               law;
     const CellStiffness<dim>                          stiffness;
-    Zone<dim>                                         zone;
     std::vector<bool>                                 joined, may_join; // by local number of nodes
     bool                                              stays = false;    // all have joined
     std::vector<PathCell<dim>>                        cells;            // this process's first

@@ -53,10 +53,10 @@ namespace PeriDeal
     static void require(const BodyParameters<dim> &body);
 
     /** As WeightedCoupling. */
-    StateCoupling(Nodes<dim>                      &nodes,
-                  const BodyParameters<dim>       &body,
-                  const Zone<dim>                 &zone,
-                  std::unique_ptr<const Weighting> weighting);
+    StateCoupling(Nodes<dim>                &nodes,
+                  const BodyParameters<dim> &body,
+                  const Zone<dim>           &zone,
+                  const CouplingScheme       scheme);
 
     BreakableZone<dim> *breakable() override
     {

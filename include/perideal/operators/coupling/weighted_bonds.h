@@ -17,10 +17,10 @@ namespace PeriDeal
     using typename Coupling<dim>::Bond;
 
     /** As WeightedCoupling. */
-    WeightedBonds(Nodes<dim>                      &nodes,
-                  const BodyParameters<dim>       &body,
-                  const Zone<dim>                 &zone,
-                  std::unique_ptr<const Weighting> weighting);
+    WeightedBonds(Nodes<dim>                &nodes,
+                  const BodyParameters<dim> &body,
+                  const Zone<dim>           &zone,
+                  const CouplingScheme       scheme);
 
     void bonds_of(const unsigned int node, std::vector<Bond> &bonds) const override;
     void possible_neighbors_of(const unsigned int         node,

@@ -8,7 +8,6 @@
 #include <perideal/operators/coupling/weighting.h>
 #include <perideal/scene/body_parameters.h>
 
-#include <memory>
 #include <vector>
 
 namespace PeriDeal
@@ -32,39 +31,35 @@ namespace PeriDeal
     using typename Coupling<dim>::Cell;
 
     /** Collective. Throws UserError for a zone without nodes. */
-    WeightedCoupling(Nodes<dim>                      &nodes,
-                     const BodyParameters<dim>       &body,
-                     const Zone<dim>                 &zone,
-                     std::unique_ptr<const Weighting> weighting);
+    WeightedCoupling(Nodes<dim>                &nodes,
+                     const BodyParameters<dim> &body,
+                     const Zone<dim>           &zone,
+                     const CouplingScheme       scheme);
 
     bool change_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
     bool finish_cell(const Cell &cell, dealii::FullMatrix<double> &stiffness) const override;
-    bool symmetric() const override;
-    bool zone_follows_cracks() const override
+    bool symmetric() const override
     {
-      return follows;
+      return weighting.symmetric();
     }
+
     std::vector<dealii::BoundingBox<dim>> joining_by(const double time) const override;
     void                                  join(const double time) override;
-    void                                  apply_change(const ChangeSet<dim> &change) override;
-    bool                                  in_zone(const unsigned int node) const override;
-    const Families<dim>                  &families() const override
+    bool                                  in_zone(const unsigned int node) const override
     {
-      return own_families;
+      return weights_now[node] > 0.;
     }
+
     std::size_t memory_consumption() const final;
 
   protected:
     /** Besides that of the families and weights. */
     virtual std::size_t memory_of_bonds() const = 0;
 
-    Families<dim>                          own_families;
-    const double                           overlap; // a length
-    const std::unique_ptr<const Weighting> weighting;
-    NodeWeights<dim>                       weights_now, weights_at_end;
+    using Coupling<dim>::own_families;
 
-  private:
-    Zone<dim>  zone;
-    const bool follows; // cracks, as they grow
+    const double     overlap; // a length
+    const Weighting  weighting;
+    NodeWeights<dim> weights_now, weights_at_end;
   };
 } // namespace PeriDeal

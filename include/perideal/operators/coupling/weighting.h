@@ -5,7 +5,7 @@
 
 #include <perideal/scene/coupling_control.h>
 
-#include <memory>
+#include <algorithm>
 
 namespace PeriDeal
 {
@@ -17,27 +17,46 @@ namespace PeriDeal
   class Weighting
   {
   public:
-    virtual ~Weighting() = default;
+    /** @param scheme `blending` or `splice`; `exchange` weighs nothing */
+    explicit Weighting(const CouplingScheme scheme)
+      : rows(scheme == CouplingScheme::splice)
+    {}
 
-    virtual double of_family(const double beta) const = 0;
-    virtual double of_row(const double beta) const    = 0;
+    double of_family(const double beta) const
+    {
+      return rows ? 1. : beta;
+    }
+
+    double of_row(const double beta) const
+    {
+      return rows ? beta : 1.;
+    }
 
     /** What finite elements keep of a cell with that mean of beta. */
-    virtual double of_cell(const double mean) const = 0;
+    double of_cell(const double mean) const
+    {
+      return rows ? 1. : std::max(0., 1. - mean);
+    }
 
     /** What they keep of the row of a node. */
-    virtual double of_cell_row(const double beta) const = 0;
+    double of_cell_row(const double beta) const
+    {
+      return rows ? 1. - beta : 1.;
+    }
 
     /** What comes of symmetric matrices is symmetric. */
-    virtual bool symmetric() const = 0;
+    bool symmetric() const
+    {
+      return !rows;
+    }
 
     /** Of a bond in the row of its first end. */
     double of_bond(const double own, const double neighbor) const
     {
       return of_row(own) * 0.5 * (of_family(own) + of_family(neighbor));
     }
-  };
 
-  /** Of `blending` or `splice`; null for `exchange`, which weighs nothing. */
-  std::unique_ptr<const Weighting> make_weighting(const CouplingScheme scheme);
+  private:
+    bool rows; // are weighed, and not energies
+  };
 } // namespace PeriDeal

@@ -7,8 +7,8 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/operators/coupling/coupling.h>
-#include <perideal/operators/interface/operator.h>
 #include <perideal/operators/interface/row_set.h>
+#include <perideal/operators/lattice/bond_term.h>
 #include <perideal/operators/parts/crack_side_factors.h>
 
 #include <memory>
@@ -19,17 +19,17 @@ namespace PeriDeal
 {
   /**
    * The bonds of a coupling as part of the matrix K of finite elements, or, where the coupling
-   * prefers it, apart from it: as a form of their own beside the few rows of the matrix that are
-   * not empty. Then stored are the sums over bonds, and K x = form(x) + matrix x.
+   * prefers it, apart from it: as a term of their own beside the few rows of the matrix that are
+   * not empty.
    *
    * Bonds are multiplied by the factors of crack-side scaling. Not collective unless stated.
    */
   template <int dim>
-  class BondsBesideElements
+  class BondsBesideElements : public BondTerm
   {
   public:
     /** Some rows of bonds: numbers of neighbours (local) and conductances. */
-    using Rows = std::vector<std::vector<std::pair<unsigned int, double>>>;
+    using Conductances = std::vector<std::vector<std::pair<unsigned int, double>>>;
 
     /** @param factors must outlive this */
     BondsBesideElements(std::unique_ptr<Coupling<dim>> coupling, const CrackSideFactors &factors);
@@ -42,7 +42,7 @@ namespace PeriDeal
     /** Damage may leave nodes alone, which keep their heat. */
     bool has_damage() const;
 
-    /** The bonds are a form of their own. The same on all processes. */
+    /** The bonds are a term of their own. The same on all processes. */
     bool apart() const
     {
       return in_form;
@@ -56,7 +56,7 @@ namespace PeriDeal
                      dealii::TrilinosWrappers::SparsityPattern &pattern) const;
 
     /** The bonds of some owned nodes as they are now. */
-    Rows rows(const std::vector<unsigned int> &nodes) const;
+    Conductances rows(const std::vector<unsigned int> &nodes) const;
 
     /** Add the bonds to the matrix of cells, unless they are apart; not compressed. */
     void add_to(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
@@ -66,31 +66,22 @@ namespace PeriDeal
      * @param nodes whose bonds may change
      * @return what their bonds were, for add_changes(); empty if they are apart
      */
-    Rows apply_change(const ChangeSet<dim> &change, const std::vector<unsigned int> &nodes);
+    Conductances apply_change(const ChangeSet<dim> &change, const std::vector<unsigned int> &nodes);
 
     /** Add to the matrix what has changed; rows that have are inserted into the set. */
     void add_changes(const std::vector<unsigned int>        &nodes,
-                     const Rows                             &old,
+                     const Conductances                     &old,
                      dealii::TrilinosWrappers::SparseMatrix &matrix,
                      RowSet                                 &touched) const;
 
     /** As Coupling. */
     void take_conductivities_at(const Vector &u);
 
-    /** Make the form of bonds that are apart. */
-    void make_form();
+    /** Make the form of bonds that are apart. Throws UserError if they cannot have it. */
+    void make_form(const OperatorForm wanted);
 
     /** Take the bonds of some nodes anew into the form; their rows are inserted into the set. */
     void change_form(const std::vector<unsigned int> &nodes, RowSet &touched);
-
-    /** Keep the rows of the cells' matrix that are not empty. Collective. */
-    void take_remainder(const dealii::TrilinosWrappers::SparseMatrix &matrix);
-
-    /** y = K x with bonds apart, and finish as in Operator::apply_then(). Collective. */
-    void multiply_then(Vector &y, const Vector &x, const Operator::RowsAction &finish) const;
-
-    /** Sum of the conductances of an owned node in the form; 0 where there is none. */
-    double sum_of(const unsigned int node) const;
 
     /** Mark those of some owned nodes that have broken bonds. */
     void mark_broken(const std::vector<unsigned int> &nodes, CrackSideFactors::Sums &sums) const;
@@ -102,32 +93,18 @@ namespace PeriDeal
     void add_heat(const Vector &u, Balance &balance) const;
 
     /** Bonds, numbers stored, memory and name of the form. Collective. */
-    void add_to(OperatorSize &size) const;
+    void add_to(OperatorSize &size) const override;
 
   private:
-    /** Rows of the cells' matrix by local numbers. */
-    struct Remainder
-    {
-      std::vector<unsigned int> rows, starts, columns;
-      std::vector<double>       values;
-    };
-
-    void add(dealii::TrilinosWrappers::SparseMatrix &matrix,
-             const std::vector<unsigned int>        &nodes,
-             const Rows                             &rows) const;
-    void add_remainder(Vector            &y,
-                       const Vector      &x,
-                       const unsigned int begin,
-                       const unsigned int end) const;
+    void add_rows(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                  const std::vector<unsigned int>        &nodes,
+                  const Conductances                     &rows) const;
     void set_form_factors();
 
     const std::unique_ptr<Coupling<dim>>                             coupled;
     const CrackSideFactors                                          &factors;
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
     const bool                                                       in_form;
-    std::unique_ptr<BondForm>                                        form;
-    Remainder                                                        remainder;
-    std::vector<double>                                              form_sums;
     mutable unsigned long long                                       n_bonds = 0;
     mutable bool                                                     recount = true;
   };

@@ -3,13 +3,11 @@
 
 #pragma once
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
 #include <perideal/operators/diffusion/cell_matrices.h>
 #include <perideal/operators/diffusion/contact_pairs.h>
-#include <perideal/operators/diffusion/diffusion_operator_base.h>
+#include <perideal/operators/diffusion/field_operator.h>
 #include <perideal/operators/diffusion/heat_loads.h>
-#include <perideal/operators/diffusion/prescribed_values.h>
+#include <perideal/operators/interface/matrix_term.h>
 #include <perideal/operators/parts/event_work.h>
 
 #include <functional>
@@ -36,11 +34,9 @@ namespace PeriDeal
    * those of unknowns that are not free.
    */
   template <int dim>
-  class FEMOperator : public DiffusionOperatorBase<dim>
+  class FEMOperator : public FieldOperator<dim>
   {
   public:
-    using RowsAction = Operator::RowsAction;
-
     /** Throws UserError for a body that it cannot compute, with its coupling or without. */
     static void require(const BodyParameters<dim> &body, const bool coupled);
 
@@ -53,45 +49,14 @@ namespace PeriDeal
                 std::unique_ptr<Coupling<dim>> coupling = nullptr,
                 const double                   start    = 0.);
 
-    void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
-    void residual_then(Vector           &r,
-                       const Vector     &u,
-                       const double      t,
-                       const RowsAction &finish) const override;
     void distribute(Vector &u, const double t) const override
     {
       prescribed.distribute(u, t);
       hanging.interpolate(u);
     }
 
-    void distribute_homogeneous(Vector &x) const override
-    {
-      prescribed.mask(x);
-    }
-
-    void clear_constrained(Vector &y) const override
-    {
-      prescribed.mask(y);
-    }
-
     bool capacity_is_diagonal() const override;
     void apply_capacity(Vector &y, const Vector &x) const override;
-    bool symmetric() const override
-    {
-      return !zone_bonds || zone_bonds->coupling().symmetric();
-    }
-
-    bool depends_on_time() const override
-    {
-      return loads.depends_on_time();
-    }
-
-    bool has_steady_state() const override
-    {
-      return prescribed.any() || body.boundary_conditions.transfers_fix_level();
-    }
-
-    void surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool surrogate_is_exact() const override
     {
       return !apart();
@@ -150,9 +115,6 @@ namespace PeriDeal
     void visit_conductances(
       const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const;
 
-    /** y = K x, constraints left out. Collective. */
-    void multiply(Vector &y, const Vector &x) const;
-
     /**
      * Heat in the body, which must have constant capacities; u has been through distribute().
      * Collective.
@@ -160,11 +122,15 @@ namespace PeriDeal
     double heat(const Vector &u) const;
 
   protected:
-    bool apply_change(const ChangeSet<dim> &change) override;
-    void find_flows(Balance &balance, Vector &heat, const Vector &u, const double t) const override;
+    bool   apply_change(const ChangeSet<dim> &change) override;
+    void   make_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    void   add_crack_heat(Balance &balance, const Vector &u) const override;
+    double content(const Vector &u) const override;
+    bool   counts(const unsigned int row) const override;
     dealii::Point<dim> position(const unsigned int local_index) const override;
 
   private:
+    using typename FieldOperator<dim>::Rows;
     using Cell = typename CellMatrices<dim>::Cell;
     using DiffusionOperatorBase<dim>::body;
     using DiffusionOperatorBase<dim>::layout;
@@ -179,17 +145,13 @@ namespace PeriDeal
       return zone_bonds && zone_bonds->apart();
     }
 
-    void   find_diagonal();
-    void   find_gershgorin();
-    void   multiply_then(Vector &y, const Vector &x, const RowsAction &finish) const;
-    void   assemble();
-    void   fill();
-    void   assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
-    void   update_rows(const bool zone_moves, const bool may_isolate);
-    double heat_of(const Vector &u) const;
-    void   add_changes(const std::vector<Cell>                       &changed,
-                       const std::vector<dealii::FullMatrix<double>> &old);
-    void   fill_noise(Vector &vector) const;
+    void assemble();
+    void fill();
+    void find_bounds(const Rows &all, const std::vector<double> &sums);
+    void update_rows(const bool zone_moves, const bool may_isolate);
+    void add_changes(const std::vector<Cell>                       &changed,
+                     const std::vector<dealii::FullMatrix<double>> &old);
+    void fill_noise(Vector &vector) const;
 
     const dealii::DoFHandler<dim>                  &dofs;
     CrackSideFactors                                crack_factors;
@@ -200,7 +162,8 @@ namespace PeriDeal
     CellMaterial<dim>                               cell_material;
     const PrescribedValues<dim>                     prescribed;
     CellMatrices<dim>                               cells;
-    dealii::TrilinosWrappers::SparseMatrix          stiffness, mass;
+    MatrixTerm                                      cell_term; // with bonds that are not apart
+    dealii::TrilinosWrappers::SparseMatrix          mass;
     std::unique_ptr<EventWork<dim>>                 event; // made for the first event
   };
 } // namespace PeriDeal

@@ -5,7 +5,7 @@
 
 #include <perideal/base/types.h>
 #include <perideal/bonds/diffusion_bonds.h>
-#include <perideal/operators/interface/held_unknowns.h>
+#include <perideal/operators/diffusion/prescribed_values.h>
 
 #include <Eigen/SparseLU>
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace PeriDeal
    * every process, and solved at each distribution.
    */
   template <int dim>
-  class NodeConstraints : public HeldUnknowns
+  class NodeConstraints : public PrescribedValues<dim>
   {
   public:
     enum Kind : std::uint8_t
@@ -32,12 +32,6 @@ namespace PeriDeal
       slave
     };
 
-    struct Prescribed
-    {
-      unsigned int         node;
-      const SideCondition *condition;
-    };
-
     /** Throws UserError for conditions that slaves cannot have. Not collective. */
     static void require(const BodyParameters<dim> &body);
 
@@ -45,30 +39,21 @@ namespace PeriDeal
     NodeConstraints(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body);
 
     /** Of an owned node. */
-    Kind kind(const unsigned int node) const;
+    Kind kind(const unsigned int node) const
+    {
+      return kinds[node];
+    }
 
-    const std::vector<Prescribed> &prescribed_nodes() const;
-
-    /** Slaves exist on some process. */
-    bool any_slave() const
+    bool any_slave() const override
     {
       return slaves_exist;
     }
 
-    /** Something is prescribed on some process. */
-    bool any_prescribed() const
-    {
-      return prescribed_exist;
-    }
-
-    /**
-     * Set prescribed values and slaves for time t. Ghosts are exchanged if there are slaves.
-     * Collective.
-     */
-    void distribute(Vector &u, const double t) const;
+    /** Ghosts are exchanged if there are slaves. Collective. */
+    void distribute(Vector &u, const double t) const override;
 
     /** The same with zero values and fluxes. Collective. */
-    void distribute_homogeneous(Vector &x) const;
+    void distribute_homogeneous(Vector &x) const override;
 
     /**
      * Bonds have changed: slaves follow from them anew, but are the same nodes. Throws UserError
@@ -94,10 +79,8 @@ namespace PeriDeal
         masters; // local nodes that are not coupled slaves
     };
 
-    void find_prescribed(const BodyParameters<dim> &body);
+    void find_prescribed(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body);
     void find_slaves(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body);
-
-    void check_parts(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body) const;
 
     // These two return what is wrong, or nothing: only some processes may see it.
     std::string extrapolate(const DiffusionBonds<dim> &bonds,
@@ -118,10 +101,9 @@ namespace PeriDeal
 
     const Nodes<dim>                            &nodes;
     std::vector<Kind>                            kinds; // owned and ghosts
-    std::vector<Prescribed>                      prescribed_list;
     std::vector<Slave>                           slaves;
-    bool                                         slaves_exist = false, prescribed_exist = false;
-    unsigned int                                 n_coupled = 0;
+    bool                                         slaves_exist = false;
+    unsigned int                                 n_coupled    = 0;
     Eigen::SparseLU<Eigen::SparseMatrix<double>> coupling;
     mutable Eigen::VectorXd                      coupled_loads, coupled_values;
   };

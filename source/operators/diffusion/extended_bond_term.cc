@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/operators/diffusion/outside_flow.h>
+#include <perideal/operators/diffusion/extended_bond_term.h>
 
 #include <algorithm>
 
@@ -10,45 +10,51 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  OutsideFlow<dim>::OutsideFlow(const DiffusionBonds<dim> &bonds)
+  ExtendedBondTerm<dim>::ExtendedBondTerm(const DiffusionBonds<dim>     &bonds,
+                                          const PrescribedValues<dim>   &prescribed,
+                                          const BoundaryConditions<dim> &conditions)
     : bonds(bonds)
+    , prescribed(prescribed)
+    , conditions(conditions)
     , outside(bonds.neighbors().outside().size())
   {}
 
 
   template <int dim>
-  const double *OutsideFlow<dim>::values(const Vector &u, const double t) const
+  const std::vector<double> &ExtendedBondTerm<dim>::values(const At &at) const
   {
     const auto &fictitious = bonds.neighbors().outside();
     for (std::size_t f = 0; f < fictitious.size(); ++f)
-      outside[f] =
-        fictitious[f].sign * u.local_element(fictitious[f].mirror) + fictitious[f].constant(t);
-    return outside.data();
+      {
+        outside[f] = fictitious[f].sign * at.u.local_element(fictitious[f].mirror);
+        if (!at.is_direction)
+          outside[f] += fictitious[f].constant(at.time);
+      }
+    return outside;
   }
 
 
   template <int dim>
-  const double *OutsideFlow<dim>::homogeneous_values(const Vector &u) const
+  void ExtendedBondTerm<dim>::update_rows(const Rows &rows)
   {
-    const auto &fictitious = bonds.neighbors().outside();
-    for (std::size_t f = 0; f < fictitious.size(); ++f)
-      outside[f] = fictitious[f].sign * u.local_element(fictitious[f].mirror);
-    return outside.data();
-  }
-
-
-  template <int dim>
-  void OutsideFlow<dim>::update(const std::vector<unsigned int> &rows)
-  {
+    BondTerm::update_rows(rows);
     if (!outside.empty() && std::any_of(rows.begin(), rows.end(), [&](const unsigned int i) {
           return reaches_outside(i);
         }))
-      sums.known = false;
+      outside_sums.known = false;
   }
 
 
   template <int dim>
-  bool OutsideFlow<dim>::reaches_outside(const unsigned int node) const
+  void ExtendedBondTerm<dim>::update_conductivities()
+  {
+    BondTerm::update_conductivities();
+    outside_sums.known = false;
+  }
+
+
+  template <int dim>
+  bool ExtendedBondTerm<dim>::reaches_outside(const unsigned int node) const
   {
     const Nodes<dim> &nodes = bonds.nodes();
     const auto        site  = nodes.lattice()->index(nodes.position(node));
@@ -65,7 +71,7 @@ namespace PeriDeal
 
   template <int dim>
   template <typename Visit>
-  void OutsideFlow<dim>::for_each_family(const Visit &visit) const
+  void ExtendedBondTerm<dim>::for_each_family(const Visit &visit) const
   {
     std::vector<typename DiffusionBonds<dim>::Bond> family;
     for (unsigned int i = 0; i < bonds.nodes().n_owned(); ++i)
@@ -78,51 +84,52 @@ namespace PeriDeal
 
 
   template <int dim>
-  void OutsideFlow<dim>::find_sums() const
+  void ExtendedBondTerm<dim>::find_sums() const
   {
     const unsigned int n_local = bonds.nodes().n_local();
-    sums                       = {true, std::vector<double>(outside.size(), 0.), {}};
+    outside_sums               = {true, std::vector<double>(outside.size(), 0.), {}};
     for_each_family([&](const unsigned int node, const auto &family) {
       double sum = 0.;
       for (const auto &bond : family)
         if (bond.neighbor >= n_local)
           {
-            sums.of_outside[bond.neighbor - n_local] += bond.weight;
+            outside_sums.of_outside[bond.neighbor - n_local] += bond.weight;
             sum += bond.weight;
           }
-      sums.of_nodes.emplace_back(node, sum);
+      outside_sums.of_nodes.emplace_back(node, sum);
     });
   }
 
 
   template <int dim>
-  void OutsideFlow<dim>::add_to(double &sum, const Vector &u) const
+  void ExtendedBondTerm<dim>::begin(const At &at, double &entering) const
   {
+    BondTerm::begin(at, entering);
+    values(at);
     if (outside.empty())
       return;
-    if (!sums.known)
+    if (!outside_sums.known)
       find_sums();
-    double total = sum;
+    double total = entering;
     for (std::size_t f = 0; f < outside.size(); ++f)
-      total += sums.of_outside[f] * outside[f];
-    for (const auto &[node, weight] : sums.of_nodes)
-      total -= weight * u.local_element(node);
-    sum = total;
+      total += outside_sums.of_outside[f] * outside[f];
+    for (const auto &[node, weight] : outside_sums.of_nodes)
+      total -= weight * at.u.local_element(node);
+    entering = total;
   }
 
 
   template <int dim>
-  void OutsideFlow<dim>::add_to(Balance                       &balance,
-                                const Vector                  &u,
-                                const NodeConstraints<dim>    &constraints,
-                                const BoundaryConditions<dim> &conditions) const
+  void ExtendedBondTerm<dim>::add_flows(Balance &balance, const At &at) const
   {
+    for (const types::boundary_id side : conditions.symmetry)
+      balance.sides[conditions.name_of(side)];
     const Nodes<dim> &nodes     = bonds.nodes();
     const auto       &dirichlet = conditions.dirichlet;
     // Which condition prescribes a node, of ghosts too: its number from 1 on.
     Vector condition_of(nodes.partitioner());
-    for (const auto &entry : constraints.prescribed_nodes())
-      condition_of.local_element(entry.node) =
+    for (const auto &entry : prescribed.entries())
+      condition_of.local_element(entry.unknown) =
         1. + static_cast<double>(entry.condition - dirichlet.data());
     condition_of.update_ghost_values();
     if (outside.empty()) // of this process
@@ -143,7 +150,7 @@ namespace PeriDeal
         if (bond.neighbor >= nodes.n_local())
           {
             const unsigned int f    = bond.neighbor - nodes.n_local();
-            const double       heat = bond.weight * (outside[f] - u.local_element(node));
+            const double       heat = bond.weight * (outside[f] - at.u.local_element(node));
             // In a prescribed node's own sum already, with the other sign.
             const SideCondition *const own = condition(node);
             balance.sides[own != nullptr ? own->name : side_of(bonds.neighbors().outside()[f])] +=
@@ -153,7 +160,7 @@ namespace PeriDeal
   }
 
 
-  template class OutsideFlow<1>;
-  template class OutsideFlow<2>;
-  template class OutsideFlow<3>;
+  template class ExtendedBondTerm<1>;
+  template class ExtendedBondTerm<2>;
+  template class ExtendedBondTerm<3>;
 } // namespace PeriDeal

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/operators/interface/term.h>
+#include <perideal/operators/lattice/bond_form.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * What bonds conduct: sum_j W_ij (u_i - u_j), by a BondForm. Vectors have the horizon-wide halo
+   * of the nodes.
+   */
+  class BondTerm : public Term
+  {
+  public:
+    /** Take the bonds, of as many nodes as the vectors of a layout have. Not collective. */
+    void take(std::unique_ptr<BondForm>                                         of_bonds,
+              const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &layout)
+    {
+      form         = std::move(of_bonds);
+      communicator = layout->get_mpi_communicator();
+      sums.resize(layout->locally_owned_size());
+      n_own_bonds = form->row_sums(sums.data());
+    }
+
+    /** Those of some owned nodes have changed. Not collective. */
+    virtual void update_rows(const Rows &rows)
+    {
+      form->update_rows(rows, sums.data());
+      n_own_bonds = -1.;
+    }
+
+    /** The conductivities of all nodes have changed. Not collective. */
+    virtual void update_conductivities()
+    {
+      form->update_conductivities(sums.data());
+    }
+
+    /** Sum of the W_ij of an owned node. */
+    double sum_of(const unsigned int node) const
+    {
+      return sums[node];
+    }
+
+    std::string name() const
+    {
+      return form->name();
+    }
+
+    void begin(const At &at, double &) const override
+    {
+      at.u.update_ghost_values();
+    }
+
+    void add(Vector &, const At &, const unsigned int, const unsigned int) const override
+    {
+      Assert(false, dealii::ExcMessage("Sums over bonds are the first term."));
+    }
+
+    void set_then(Vector &y, const At &at, const Operator::RowsAction &finish) const override
+    {
+      form->apply(y.begin(), at.u.begin(), beyond(), finish);
+      at.u.set_ghost_state(false);
+    }
+
+    void add_diagonal(Vector &diagonal, const Rows &rows) const override
+    {
+      for (const unsigned int i : rows)
+        diagonal.local_element(i) += sums[i];
+    }
+
+    void add_row_sums(std::vector<double> &of_rows, const Rows &rows) const override
+    {
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        of_rows[k] += 2. * sums[rows[k]];
+    }
+
+    void add_to(OperatorSize &size) const override
+    {
+      if (n_own_bonds < 0.)
+        {
+          std::vector<double> again(sums.size());
+          n_own_bonds = form->row_sums(again.data());
+        }
+      size.bonds = static_cast<unsigned long long>(
+        std::llround(dealii::Utilities::MPI::sum(n_own_bonds, communicator)));
+      size.nonzeros += dealii::Utilities::MPI::sum(form->n_stored(), communicator);
+      size.memory += form->memory_consumption() + sums.capacity() * sizeof(double);
+      size.form = form->name();
+    }
+
+  protected:
+    /** Values of the fictitious nodes, null if there are none. */
+    virtual const double *beyond() const
+    {
+      return nullptr;
+    }
+
+  private:
+    std::unique_ptr<BondForm> form;
+    std::vector<double>       sums;
+    MPI_Comm                  communicator = MPI_COMM_SELF;
+    mutable double            n_own_bonds  = -1.; // of this process; negative: to be counted
+  };
+} // namespace PeriDeal
