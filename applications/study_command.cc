@@ -42,15 +42,6 @@ namespace PeriDeal
     }
 
 
-    bool has_options_of_work_precision(const StudyRequest &request)
-    {
-      const WorkPrecisionOptions &options = request.work_precision;
-      return !options.cells.empty() || !options.reference.empty() ||
-             options.budget != WorkPrecisionOptions().budget || !options.picks ||
-             options.measure != WorkPrecisionOptions().measure;
-    }
-
-
     bool has_options_of_stability(const StudyRequest &request)
     {
       const StabilityOptions &options = request.stability, none;
@@ -70,7 +61,7 @@ namespace PeriDeal
     void refuse_options_of_work_precision(const StudyRequest &request)
     {
       AssertThrow(
-        !has_options_of_work_precision(request),
+        !request.of_work_precision,
         UserError(
           "--cells, --reference, --budget, --measure and --no-auto are for `perideal study work_precision SCENE.prm`."));
     }
@@ -95,31 +86,15 @@ namespace PeriDeal
       options.quiet     = request.quiet;
       run_stability(options, MPI_COMM_WORLD);
     }
-
-
-    /** `perideal study work_precision SCENE.prm`. */
-    void compute_work_precision(const StudyRequest &request)
-    {
-      WorkPrecisionOptions options = request.work_precision;
-      options.scene                = scene_of_kind(request);
-      AssertThrow(
-        request.variations.empty(),
-        UserError(
-          "--vary is not for work_precision, which varies methods and lattices; --cells names the lattices."));
-      refuse_options_of_stability(request);
-      options.overrides   = request.overrides;
-      options.output      = request.output;
-      options.study       = request.study;
-      options.study.quiet = request.quiet;
-      run_work_precision(options, MPI_COMM_WORLD);
-    }
   } // namespace
 
 
   void compute_study(const StudyRequest &request)
   {
-    if (request.files.front() == work_precision)
-      return compute_work_precision(request);
+    AssertThrow(request.files.front() != work_precision,
+                UserError("work_precision is a driver of this program in Python: `./run study "
+                          "work_precision SCENE.prm`, or `python3 -m perideal study work_precision "
+                          "SCENE.prm` (doc/python.md)."));
     if (request.files.front() == stability)
       return compute_stability(request);
     const std::string &first = request.files.front();
@@ -166,8 +141,7 @@ namespace PeriDeal
       ->add_option(
         "files",
         request.files,
-        "study file (.json), or scenes (.prm), or: work_precision SCENE.prm, which charts accuracy "
-        "against cost over methods and lattices, or: stability SCENE.prm, which maps where the scene "
+        "study file (.json), or scenes (.prm), or: stability SCENE.prm, which maps where the scene "
         "is computed well and where not")
       ->required();
     study
@@ -196,26 +170,13 @@ namespace PeriDeal
                    request.study.repeats,
                    "run every row so often and keep the smallest times")
       ->check(CLI::Range(1u, 1000u));
-    study->add_option(
-      "--cells",
-      request.work_precision.cells,
-      "work_precision: the lattices, from coarse to fine: \"21, 21 | 41, 41 | 81, 81\"");
-    study->add_option("--reference",
-                      request.work_precision.reference,
-                      "work_precision: the three lattices of the reference solution");
-    study
-      ->add_option("--budget",
-                   request.work_precision.budget,
-                   "work_precision: leave out peridynamics in the whole body with more bonds (2e6)")
-      ->check(CLI::PositiveNumber);
-    study->add_option(
-      "--measure",
-      request.work_precision.measure,
-      "work_precision: the error of the field, of the opening of cracks, or of stress "
-      "intensity (field)");
-    study->add_flag("!--no-auto",
-                    request.work_precision.picks,
-                    "work_precision: leave out what `Models = auto` chooses");
+    for (const char *const name : {"--cells", "--reference", "--budget", "--measure"})
+      study
+        ->add_option_function<std::string>(
+          name,
+          [&](const std::string &) { request.of_work_precision = true; })
+        ->group("");
+    study->add_flag("--no-auto", request.of_work_precision)->group("");
     study->add_option(
       "--maps",
       request.stability.maps,

@@ -5,7 +5,6 @@
 
 #include <perideal/study/stability.h>
 #include <perideal/study/study.h>
-#include <perideal/study/work_precision.h>
 
 #include <string>
 #include <vector>
@@ -23,9 +22,9 @@ namespace PeriDeal
     std::vector<std::string> files; // one study file, or scenes, or a kind of study and its scene
     std::vector<std::string> variations, overrides;
     std::string              output;
-    bool                     quiet = false;
+    bool                     quiet             = false;
+    bool                     of_work_precision = false; // options that are for it alone
     StudyOptions             study;
-    WorkPrecisionOptions     work_precision;
     StabilityOptions         stability;
   };
 

@@ -6,7 +6,7 @@
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/problems/problem_factory.h>
 #include <perideal/scene/scene.h>
-#include <perideal/study/lattice_ladder.h>
+#include <perideal/study/cracked_box.h>
 #include <perideal/study/naming.h>
 
 #include <string>

@@ -13,7 +13,7 @@ import os
 import subprocess
 import sys
 
-from scene_test import SOURCE_DIR, check, check_close, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
+from scene_test import SOURCE_DIR, check, check_close, run_driver, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
 from scene_texts import body_of_bonds
 
 PLATE = scene_text("""
@@ -265,7 +265,7 @@ def mistakes():
     stdout, stderr, _, _ = study(write("bar.prm", BAR), "--maps", "growth, error", "--quick", *short, output="mistakes", expect=1)
     check("error: 18 points" in stdout and "No point" in stderr and "growth: " in stderr and "longer than the body" in stderr, f"no points:\n{stdout}{stderr}")
     for arguments in (["stability"], ["stability", plate, plate], [plate, "--random", "3"], ["work_precision", plate, "--maps", "growth"]):
-        status, _, stderr = run_perideal(["study", *arguments])
+        status, _, stderr = run_driver(["study", *arguments])
         check(status == 1 and "stability" in stderr, f"study {arguments}: {stderr}")
 
 
