@@ -13,6 +13,7 @@
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/model_choice.h>
+#include <perideal/study/model_questions.h>
 #include <perideal/study/scene_facts.h>
 
 #include <CLI/CLI.hpp>
@@ -103,7 +104,7 @@ namespace
   /** What the command line asks for. */
   struct Request
   {
-    std::string              scene, format = "prm";
+    std::string              scene, format = "prm", question;
     std::vector<std::string> overrides;
     bool quiet = false, estimate = false, facts = false, resume = false, overwrite = false;
 
@@ -122,7 +123,6 @@ namespace
       "  mpirun -np 4 perideal run prm/quick_start.prm\n"
       "  perideal study prm/studies/delta_convergence.json\n"
       "  perideal study prm/quick_start.prm --vary \"Domain/Cells=30, 30 | 60, 60\" --vary \"Peridynamics/Horizon ratio=2 | 3\"\n"
-      "  perideal study stability prm/quick_start.prm --random 20\n"
       "  perideal parameters \"Horizon ratio\"\n"
       "  perideal parameters markdown\n"
       "Scenes to start from are in prm/; the format is explained in doc/scene_format.md, that of studies in doc/study.md.");
@@ -160,6 +160,9 @@ namespace
     check->add_flag("--json",
                     request.facts,
                     "print what the scene is as JSON, for programs; nothing is built");
+    check->add_option("--ask",
+                      request.question,
+                      "answer a question about the first model, for programs (doc/python.md)");
     describe_study(app, request.study);
     app.add_subcommand(
       "serve",
@@ -243,6 +246,14 @@ namespace
       }
     else if (app.got_subcommand("study"))
       compute_study(request.study);
+    else if (!request.question.empty())
+      {
+        const std::string answer =
+          answer_about_model(read_scene(request.scene, request.overrides, MPI_COMM_WORLD),
+                             request.question);
+        if (first_rank)
+          std::cout << answer;
+      }
     else
       compute(request.scene,
               request.overrides,

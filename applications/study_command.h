@@ -3,9 +3,9 @@
 
 #pragma once
 
-#include <perideal/study/stability.h>
 #include <perideal/study/study.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,10 +22,9 @@ namespace PeriDeal
     std::vector<std::string> files; // one study file, or scenes, or a kind of study and its scene
     std::vector<std::string> variations, overrides;
     std::string              output;
-    bool                     quiet             = false;
-    bool                     of_work_precision = false; // options that are for it alone
+    bool                     quiet = false;
+    std::set<std::string>    of_drivers; // whose own options were given
     StudyOptions             study;
-    StabilityOptions         stability;
   };
 
   /** Add the command and its options, which fill the request. */

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """The Python package: fronts and lattices of its studies, runs, results, servers, mistakes, interrupts.
 
-    python3 python_package.py [fronts | lattices | results | runs | serve | errors | stopped | example] ...     (all without arguments)
+    python3 python_package.py [fronts | lattices | maps | results | runs | serve | errors | stopped | example] ...     (all without arguments)
 """
 
 import json
@@ -19,9 +19,11 @@ import numpy as np
 from scene_test import FE, PD, SOURCE_DIR, check, check_close, environment, run_driver, run_parts, scene_text, temporary_folder, write_file
 import perideal
 from perideal.program import call, command, settings
+from perideal.stability.scene import Point as MapPoint, Random, coarse_cells
+from perideal.stability.tables import Result, RandomPoint, describe, stability_csv
 from perideal.work_precision import lattice
 from perideal.work_precision.pareto import Point, cost_at_error, dominates, dominating, front, observed_order, order_of_differences, richardson
-from perideal.work_precision.words import did_you_mean, full_precision, number_text, readable_count
+from perideal.words import did_you_mean, full_precision, number_text, readable_count
 
 PLATE = scene_text("""
 Title = Small plate
@@ -122,6 +124,36 @@ def lattices():
     check_close(lattice.nodal_error(one, 0 * one, (2, 2)), 1, absolute=1e-14, what="without a reference")
     gap = np.where(np.arange(9) == 4, math.nan, 1)
     check_close(lattice.nodal_error(2 * one, gap, (2, 2), with_gaps=True), 1, absolute=1e-14, what="a gap does not count")
+
+
+def maps():
+    """Coarse lattices, random numbers, tables of maps; questions about a model."""
+    for cells, n_halvings, coarse in (((49, 49), 0, [21, 21]), ((64, 64), 2, [20, 20]), ((200,), 0, [60]), ((16, 16, 16), 0, [8, 8, 8]), ((10, 7), 0, [10, 7]),
+                                      ((1,), 0, [1])):
+        check(coarse_cells(cells, n_halvings) == coarse, f"{cells}: {coarse_cells(cells, n_halvings)}, expected {coarse}")
+    random = Random(1)
+    check([random.next(), random.next()] == [1791095845, 4282876139], "the numbers of std::mt19937")
+    check(Random(1).uniform(2, 4) == 2 + 2 * 1791095845 / 2 ** 32 and Random(1).any_of("abc") == "abc"[1791095845 % 3], "of a range, of a list")
+
+    class Steps:
+        name = "step limit"
+
+    points = [MapPoint({"method": "euler", "stages": None, "m": 2.0}, 1.0, 1.02, "safe"), MapPoint({"method": "a, b", "stages": 3}, math.inf, math.nan, "fails")]
+    result = Result(Steps(), "", points, [RandomPoint(True, points[0]), RandomPoint(False, points[0])], ["this"])
+    check(stability_csv([result]) == 'map,sample,method,stages,m,predicted,observed,verdict\nstep limit,grid,euler,,2,1,1.02,safe\n'
+          'step limit,grid,"a, b",3,,inf,nan,fails\nstep limit,inside,euler,,2,1,1.02,safe\nstep limit,outside,euler,,2,1,1.02,safe\n', stability_csv([result]))
+    check(describe(result) == ["  step limit: 2 points, 1 fails, 1 safe (0 s)", "    observed over predicted: 1.02 to 1.02", "    1 of 1 random points inside are healthy",
+                               "    0 of 1 random points outside are not healthy", "    left out: this"], f"{describe(result)}")
+
+    plate = write_file("plate.prm", PLATE)
+    for question, words in (('{"ask": "weather"}', "no question 'weather'"), ("steps", "no question"), ('{"ask": "heat"}', "no question"),
+                            ('{"ask": "flow", "side": "top"}', "not for this model")):
+        scene = plate if "flow" not in question else write_file("body.prm", BODY)
+        answer = call(["check", scene, "-s", "Models=finite elements", "--ask", question])
+        check(answer.status == 1 and words in answer.errors, f"{question}: {answer}")
+    answer = call(["check", plate, "-s", "Models=finite elements", "--ask", '{"ask": "flow", "side": "top"}'])
+    flux = perideal.run(plate, {"Models": FE, "Output/Fields": "none"}).summary["models"][FE]["boundary flux"]["top"]
+    check_close(json.loads(answer.output)["flow"], flux, relative=1e-9, what="a flow")
 
 
 def results():
@@ -278,4 +310,4 @@ def example():
 
 
 if __name__ == "__main__":
-    run_parts(fronts, lattices, results, runs, serve, errors, stopped, example)
+    run_parts(fronts, lattices, maps, results, runs, serve, errors, stopped, example)

@@ -22,7 +22,7 @@ from .evaluation import ComputedRow, evaluate
 from .families import FAMILIES
 from .lattice import Cells, n_vertices, to_text
 from .plan import Plan, Row, comparison_of, make_plan, require_comparable
-from .words import full_precision
+from ..words import full_precision
 
 # Unknowns of multigrid's coarsest level: so few that iterations compare on coarse lattices, too. On
 # those that have no more it has another level.

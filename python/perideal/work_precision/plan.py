@@ -10,7 +10,7 @@ from ..program import Error
 from . import lattice
 from .families import FAMILIES, Family
 from .lattice import Cells
-from .words import did_you_mean, number_text, readable_count
+from ..words import did_you_mean, number_text, readable_count
 
 MEASURES = ("field", "opening", "stress intensity")
 N_RUNGS = 4

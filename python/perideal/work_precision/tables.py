@@ -11,7 +11,7 @@ from .evaluation import Pick, Reference, TimeRow, WorkResults
 from .families import FAMILIES, Family
 from .pareto import Cost, cost_at_error, observed_order
 from .plan import Plan
-from .words import full_precision
+from ..words import full_precision
 
 TARGET_ERRORS = (1e-2, 1e-3)
 COLUMNS = ("name", "family", "model", "cells", "node spacing", "unknowns", "bonds", "nonzeros", "nonzeros applied", "iterations",

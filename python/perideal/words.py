@@ -21,6 +21,15 @@ def full_precision(value: float) -> str:
     return "nan" if math.isnan(value) else f"{value:.15g}"
 
 
+def readable_duration(seconds: float) -> str:
+    """"5.4 s", "12 s", "3 min 20 s", "2 h 5 min"."""
+    if seconds < 60:
+        return f"{seconds:.2g} s" if seconds < 9.95 else f"{seconds:.0f} s"
+    if seconds < 3600:
+        return f"{int(seconds / 60)} min {int(seconds) % 60} s"
+    return f"{int(seconds / 3600)} h {int(seconds / 60) % 60} min"
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """" Did you mean 'x'?", the name nearest in edit distance, or nothing where none is near enough to be what was meant."""
     distance, best = min(((_edit_distance(name.lower(), one.lower()), one) for one in known), key=lambda pair: pair[0])
