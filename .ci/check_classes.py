@@ -60,7 +60,6 @@ WIDER = {
     "source/solvers/implicit_stepper.h": {"ImplicitStepper": (19, 19, 2)},
     "source/solvers/rkc2.cc": {"RKC2": (19, 15, 0)},
     "source/study/model_choice.cc": {"Choice": (22, 17, 0)},
-    "source/study/stability_scene.h": {"StabilityFacts": (1, 14, 0)},
 }
 
 

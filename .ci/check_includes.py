@@ -166,7 +166,7 @@ def say(findings, where, in_order):
 def main():
     findings = []
     n_files = 0
-    for folder in ("include", "source", "applications", "tests", "cmake"):
+    for folder in ("include", "source", "applications", "python", "tests", "cmake"):
         for path in files(folder, (".h", ".cc", ".py", ".cmake", "CMakeLists.txt")):
             n_files += 1
             with open(os.path.join(ROOT, path), encoding="utf-8") as file:

@@ -13,6 +13,8 @@
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/model_choice.h>
+#include <perideal/study/model_questions.h>
+#include <perideal/study/scene_facts.h>
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>
@@ -22,6 +24,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "serve_command.h"
 #include "study_command.h"
 
 namespace
@@ -48,7 +51,8 @@ namespace
   {
     run,
     check,
-    estimate
+    estimate,
+    facts
   };
 
 
@@ -63,6 +67,12 @@ namespace
     parse_computable(text, scene);
     if (action == Action::run)
       return run_scene(scene, text, communicator, mode, quiet);
+    if (action == Action::facts)
+      {
+        if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+          std::cout << scene_facts(scene);
+        return;
+      }
     if (scene.general.automatic)
       return describe_choice(scene, text, communicator, quiet);
     if (action == Action::estimate || is_large(scene, communicator))
@@ -94,9 +104,9 @@ namespace
   /** What the command line asks for. */
   struct Request
   {
-    std::string              scene, format = "prm";
+    std::string              scene, format = "prm", question;
     std::vector<std::string> overrides;
-    bool                     quiet = false, estimate = false, resume = false, overwrite = false;
+    bool quiet = false, estimate = false, facts = false, resume = false, overwrite = false;
 
     StudyRequest study;
   };
@@ -113,8 +123,6 @@ namespace
       "  mpirun -np 4 perideal run prm/quick_start.prm\n"
       "  perideal study prm/studies/delta_convergence.json\n"
       "  perideal study prm/quick_start.prm --vary \"Domain/Cells=30, 30 | 60, 60\" --vary \"Peridynamics/Horizon ratio=2 | 3\"\n"
-      "  perideal study work_precision prm/coupling/oblique_crack.prm\n"
-      "  perideal study stability prm/quick_start.prm --random 20\n"
       "  perideal parameters \"Horizon ratio\"\n"
       "  perideal parameters markdown\n"
       "Scenes to start from are in prm/; the format is explained in doc/scene_format.md, that of studies in doc/study.md.");
@@ -149,7 +157,17 @@ namespace
       "--estimate",
       request.estimate,
       "build two coarse lattices in place of the scene and estimate from them; scenes of more than some 500,000 unknowns are always estimated");
+    check->add_flag("--json",
+                    request.facts,
+                    "print what the scene is as JSON, for programs; nothing is built");
+    check->add_option("--ask",
+                      request.question,
+                      "answer a question about the first model, for programs (doc/python.md)");
     describe_study(app, request.study);
+    app.add_subcommand(
+      "serve",
+      "Execute commands that lines of standard input give as JSON, {\"arguments\": [\"run\", \"scene.prm\"]}, and answer each "
+      "with a line, {\"status\": 0, \"message\": \"\"}: many runs for one start (doc/python.md)");
     CLI::App *parameters = app.add_subcommand(
       "parameters",
       "Print every entry of a scene file with type, default, unit and explanation, or explain one entry or section");
@@ -165,7 +183,7 @@ namespace
   /** A word that is no command, or no command at all. Throws UserError. */
   void require_command(const int argc, char **argv)
   {
-    const std::vector<std::string> commands = {"run", "check", "study", "parameters"};
+    const std::vector<std::string> commands = {"run", "check", "study", "parameters", "serve"};
     const std::string              help =
       " Commands: " + join_names(commands) + ". `perideal --help` explains them.";
     AssertThrow(argc > 1, UserError("A command is missing." + help));
@@ -218,6 +236,8 @@ namespace
           app.exit(problem); // --help or --version
         return;
       }
+    AssertThrow(!app.got_subcommand("serve"), // main() has not come here
+                UserError("serve: a command of a server cannot be a server."));
     if (app.got_subcommand("parameters"))
       {
         const std::string manual = parameter_manual(request.format);
@@ -226,9 +246,18 @@ namespace
       }
     else if (app.got_subcommand("study"))
       compute_study(request.study);
+    else if (!request.question.empty())
+      {
+        const std::string answer =
+          answer_about_model(read_scene(request.scene, request.overrides, MPI_COMM_WORLD),
+                             request.question);
+        if (first_rank)
+          std::cout << answer;
+      }
     else
       compute(request.scene,
               request.overrides,
+              request.facts               ? Action::facts :
               request.estimate            ? Action::estimate :
               app.got_subcommand("check") ? Action::check :
                                             Action::run,
@@ -239,28 +268,59 @@ namespace
   }
 
 
-  /**
-   * One message, from rank 0 if everybody has it. The others must not wait forever for a process
-   * that failed alone.
-   */
-  int report(const std::string &message, const bool first_rank, const ExitStatus status)
+  /** Do what the words ask for. */
+  Ending perform(const std::vector<std::string> &words, const bool first_rank)
   {
-    const int  number = static_cast<int>(status);
-    const bool all    = all_processes_arrive(MPI_COMM_WORLD);
-    if (first_rank || !all)
-      std::cerr << "\nperideal: " << message << std::endl;
-    std::signal(SIGTERM, SIG_DFL); // mpirun ends those who are left, which need not be said
-    if (!all)
-      PMPI_Abort(MPI_COMM_WORLD, number);
-    return number;
+    std::vector<char *> argv;
+    for (const std::string &word : words)
+      argv.push_back(const_cast<char *>(word.c_str()));
+    const int  argc  = static_cast<int>(argv.size());
+    const auto fault = [](const std::string &what) {
+      return Ending{ExitStatus::fault,
+                    "internal error, please report it with the scene file:\n" + what};
+    };
+    try
+      {
+        with_memory_errors([&] { execute(argc, argv.data(), first_rank); });
+        return {};
+      }
+    catch (const UserError &error)
+      {
+        return {ExitStatus::error, "error: " + error.message()};
+      }
+    catch (const Stopped &stopped)
+      {
+        const unsigned int n_proc = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+        return {ExitStatus::stopped,
+                std::string(stopped.what()) +
+                  "\nTo go on:  " + command_that_resumes(argc, argv.data(), n_proc)};
+      }
+    catch (const std::exception &error)
+      {
+        return fault(error.what());
+      }
+    catch (...) // Trilinos throws numbers
+      {
+        return fault("an exception without a text");
+      }
   }
 
 
-  int report_fault(const std::string &what, const bool first_rank)
+  /**
+   * Say how it has ended: one message, from rank 0 if everybody has it. The others must not wait
+   * forever for a process that failed alone.
+   */
+  void report(const Ending &ending, const bool first_rank)
   {
-    return report("internal error, please report it with the scene file:\n" + what,
-                  first_rank,
-                  ExitStatus::fault);
+    if (ending.status == ExitStatus::complete)
+      return;
+    const bool all = all_processes_arrive(MPI_COMM_WORLD);
+    if (first_rank || !all)
+      std::cerr << "\nperideal: " << ending.message << std::endl;
+    if (all)
+      return;
+    std::signal(SIGTERM, SIG_DFL);
+    PMPI_Abort(MPI_COMM_WORLD, static_cast<int>(ending.status));
   }
 } // namespace
 
@@ -318,29 +378,20 @@ int main(int argc, char **argv)
   const bool first_rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   handle_signals(first_rank, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1);
   const ExitGuard guard;
-  try
-    {
-      with_memory_errors([&] { execute(argc, argv, first_rank); });
-      return static_cast<int>(ExitStatus::complete);
-    }
-  catch (const UserError &error)
-    {
-      return report("error: " + error.message(), first_rank, ExitStatus::error);
-    }
-  catch (const Stopped &stopped)
-    {
-      const unsigned int n_proc = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-      return report(std::string(stopped.what()) +
-                      "\nTo go on:  " + command_that_resumes(argc, argv, n_proc),
-                    first_rank,
-                    ExitStatus::stopped);
-    }
-  catch (const std::exception &error)
-    {
-      return report_fault(error.what(), first_rank);
-    }
-  catch (...) // Trilinos throws numbers
-    {
-      return report_fault("an exception without a text", first_rank);
-    }
+
+  std::vector<std::string> words(argv, argv + argc);
+  const auto               perform_and_report = [&](const std::vector<std::string> &all) {
+    const Ending ending = perform(all, first_rank);
+    report(ending, first_rank);
+    return ending;
+  };
+  if (words.size() == 2 && words[1] == "serve")
+    return static_cast<int>(serve([&](std::vector<std::string> arguments) {
+      arguments.insert(arguments.begin(), words[0]);
+      return perform_and_report(arguments);
+    }));
+  const Ending ending = perform_and_report(words);
+  if (ending.status != ExitStatus::complete)
+    std::signal(SIGTERM, SIG_DFL); // mpirun ends those who are left, which need not be said
+  return static_cast<int>(ending.status);
 }

@@ -23,111 +23,48 @@ namespace PeriDeal
     }
 
 
-    // In place of a study file.
-    const std::string work_precision = "work_precision", stability = "stability";
-
-
-    /** The scene of `perideal study KIND SCENE.prm`. Throws UserError. */
-    const std::string &scene_of_kind(const StudyRequest &request)
+    /** A study that a driver in Python plans, and its own options, as a sentence has them. */
+    struct Driver
     {
-      AssertThrow(
-        request.files.size() == 2 && !is_study_file(request.files[1]),
-        UserError(
-          "perideal study " + request.files[0] + " needs one scene (.prm), found " +
-          (request.files.size() == 1 ?
-             "none" :
-             join_names(std::vector<std::string>(request.files.begin() + 1, request.files.end()))) +
-          "."));
-      return request.files[1];
-    }
+      std::string              name;
+      std::vector<std::string> options;
+      std::string              words;
+    };
+
+    const std::vector<Driver> drivers = {
+      {"work_precision",
+       {"--cells", "--reference", "--budget", "--measure"},
+       "--cells, --reference, --budget, --measure and --no-auto"},
+      {"stability", {"--maps", "--random", "--seed"}, "--maps, --random and --seed"}};
 
 
-    bool has_options_of_work_precision(const StudyRequest &request)
+    /** That such a study is asked of its driver. Throws UserError. */
+    void refuse_drivers(const StudyRequest &request)
     {
-      const WorkPrecisionOptions &options = request.work_precision;
-      return !options.cells.empty() || !options.reference.empty() ||
-             options.budget != WorkPrecisionOptions().budget || !options.picks ||
-             options.measure != WorkPrecisionOptions().measure;
-    }
-
-
-    bool has_options_of_stability(const StudyRequest &request)
-    {
-      const StabilityOptions &options = request.stability, none;
-      return !options.maps.empty() || options.n_random != none.n_random ||
-             options.seed != none.seed;
-    }
-
-
-    void refuse_options_of_stability(const StudyRequest &request)
-    {
-      AssertThrow(
-        !has_options_of_stability(request),
-        UserError("--maps, --random and --seed are for `perideal study stability SCENE.prm`."));
-    }
-
-
-    void refuse_options_of_work_precision(const StudyRequest &request)
-    {
-      AssertThrow(
-        !has_options_of_work_precision(request),
-        UserError(
-          "--cells, --reference, --budget, --measure and --no-auto are for `perideal study work_precision SCENE.prm`."));
-    }
-
-
-    /** `perideal study stability SCENE.prm`. */
-    void compute_stability(const StudyRequest &request)
-    {
-      StabilityOptions options = request.stability;
-      options.scene            = scene_of_kind(request);
-      AssertThrow(
-        request.variations.empty(),
-        UserError("--vary is not for stability, whose maps say what they vary; --maps chooses "
-                  "them."));
-      AssertThrow(request.study.only.empty() && !request.study.redo && request.study.repeats == 1,
-                  UserError("--only, --redo and --repeat are not for stability, which has no rows; "
-                            "--maps chooses maps."));
-      refuse_options_of_work_precision(request);
-      options.overrides = request.overrides;
-      options.output    = request.output;
-      options.quick     = request.study.quick;
-      options.quiet     = request.quiet;
-      run_stability(options, MPI_COMM_WORLD);
-    }
-
-
-    /** `perideal study work_precision SCENE.prm`. */
-    void compute_work_precision(const StudyRequest &request)
-    {
-      WorkPrecisionOptions options = request.work_precision;
-      options.scene                = scene_of_kind(request);
-      AssertThrow(
-        request.variations.empty(),
-        UserError(
-          "--vary is not for work_precision, which varies methods and lattices; --cells names the lattices."));
-      refuse_options_of_stability(request);
-      options.overrides   = request.overrides;
-      options.output      = request.output;
-      options.study       = request.study;
-      options.study.quiet = request.quiet;
-      run_work_precision(options, MPI_COMM_WORLD);
+      const std::string       &first = request.files.front();
+      std::vector<std::string> names;
+      for (const Driver &driver : drivers)
+        {
+          AssertThrow(first != driver.name,
+                      UserError(first + " is a driver of this program in Python: `./run study " +
+                                first + " SCENE.prm`, or `python3 -m perideal study " + first +
+                                " SCENE.prm` (doc/python.md)."));
+          names.push_back(driver.name);
+        }
+      const std::string hint = did_you_mean(first, names);
+      AssertThrow(hint.empty() || std::filesystem::exists(first),
+                  UserError("perideal study: there is no scene '" + first + "'." + hint));
+      for (const Driver &driver : drivers)
+        AssertThrow(
+          request.of_drivers.count(driver.name) == 0,
+          UserError(driver.words + " are for `perideal study " + driver.name + " SCENE.prm`."));
     }
   } // namespace
 
 
   void compute_study(const StudyRequest &request)
   {
-    if (request.files.front() == work_precision)
-      return compute_work_precision(request);
-    if (request.files.front() == stability)
-      return compute_stability(request);
-    const std::string &first = request.files.front();
-    const std::string  hint  = did_you_mean(first, {work_precision, stability});
-    AssertThrow(hint.empty() || std::filesystem::exists(first),
-                UserError("perideal study: there is no scene '" + first + "'." + hint));
-    refuse_options_of_work_precision(request);
-    refuse_options_of_stability(request);
+    refuse_drivers(request);
     const MPI_Comm communicator = MPI_COMM_WORLD;
     Study          study;
     if (std::any_of(request.files.begin(), request.files.end(), is_study_file))
@@ -162,14 +99,7 @@ namespace PeriDeal
       "study",
       "Compute many runs: the rows of a study file (.json), or all combinations of what --vary names; "
       "finished rows are kept, so an interrupted study goes on where it was");
-    study
-      ->add_option(
-        "files",
-        request.files,
-        "study file (.json), or scenes (.prm), or: work_precision SCENE.prm, which charts accuracy "
-        "against cost over methods and lattices, or: stability SCENE.prm, which maps where the scene "
-        "is computed well and where not")
-      ->required();
+    study->add_option("files", request.files, "study file (.json), or scenes (.prm)")->required();
     study
       ->add_option(
         "--vary",
@@ -187,45 +117,22 @@ namespace PeriDeal
     study->add_option("--only",
                       request.study.only,
                       "compute the rows or groups of these names only");
-    study->add_flag("--quick",
-                    request.study.quick,
-                    "compute the rows marked \"quick\" only; stability: few points of each map");
+    study->add_flag("--quick", request.study.quick, "compute the rows marked \"quick\" only");
     study->add_flag("--redo", request.study.redo, "compute finished rows again");
     study
       ->add_option("--repeat",
                    request.study.repeats,
                    "run every row so often and keep the smallest times")
       ->check(CLI::Range(1u, 1000u));
-    study->add_option(
-      "--cells",
-      request.work_precision.cells,
-      "work_precision: the lattices, from coarse to fine: \"21, 21 | 41, 41 | 81, 81\"");
-    study->add_option("--reference",
-                      request.work_precision.reference,
-                      "work_precision: the three lattices of the reference solution");
-    study
-      ->add_option("--budget",
-                   request.work_precision.budget,
-                   "work_precision: leave out peridynamics in the whole body with more bonds (2e6)")
-      ->check(CLI::PositiveNumber);
-    study->add_option(
-      "--measure",
-      request.work_precision.measure,
-      "work_precision: the error of the field, of the opening of cracks, or of stress "
-      "intensity (field)");
-    study->add_flag("!--no-auto",
-                    request.work_precision.picks,
-                    "work_precision: leave out what `Models = auto` chooses");
-    study->add_option(
-      "--maps",
-      request.stability.maps,
-      "stability: the maps wanted, with commas between them: \"step limit, growth\"");
-    study
-      ->add_option("--random",
-                   request.stability.n_random,
-                   "stability: so many random points inside each safe region, and outside")
-      ->check(CLI::Range(0u, 10000u));
-    study->add_option("--seed", request.stability.seed, "stability: of the random points (1)");
+    for (const Driver &driver : drivers)
+      for (const std::string &name : driver.options)
+        study
+          ->add_option_function<std::string>(
+            name,
+            [&](const std::string &) { request.of_drivers.insert(driver.name); })
+          ->group("");
+    study->add_flag_callback("--no-auto", [&] { request.of_drivers.insert(drivers.front().name); })
+      ->group("");
     study->add_flag("-q,--quiet", request.quiet, "print nothing but errors");
   }
 

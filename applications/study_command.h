@@ -3,10 +3,9 @@
 
 #pragma once
 
-#include <perideal/study/stability.h>
 #include <perideal/study/study.h>
-#include <perideal/study/work_precision.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,9 +23,8 @@ namespace PeriDeal
     std::vector<std::string> variations, overrides;
     std::string              output;
     bool                     quiet = false;
+    std::set<std::string>    of_drivers; // whose own options were given
     StudyOptions             study;
-    WorkPrecisionOptions     work_precision;
-    StabilityOptions         stability;
   };
 
   /** Add the command and its options, which fill the request. */

@@ -21,6 +21,10 @@ install(FILES ${PROJECT_BINARY_DIR}/PeriDealConfig.cmake ${PROJECT_BINARY_DIR}/P
   ${PROJECT_BINARY_DIR}/PeriDealDealII.cmake DESTINATION ${perideal_package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+# The Python package, for PYTHONPATH; it finds the program that is installed with it.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python DESTINATION ${CMAKE_INSTALL_DATADIR}/perideal
+  FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+
 # The scripts that draw reports, and the scenes to start from with their meshes and pictures.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/applications/report DESTINATION ${CMAKE_INSTALL_DATADIR}/perideal
   FILES_MATCHING PATTERN "*.py" PATTERN "*.css" PATTERN "__pycache__" EXCLUDE)

@@ -12,7 +12,7 @@ figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture
 than its scene is left as it is, unless --all is given. The tables name every scene below prm/ (six of them in the README) with
 its title and the first sentence of its comment, up to a colon or bracket; --table writes the tables only.
 --work-precision makes the charts of accuracy against cost of doc/coupling.md instead, and prints what
-`perideal study work_precision` says. --charts makes those of doc/charts.md.
+`./run study work_precision` says. --charts makes those of doc/charts.md.
 """
 
 import argparse
@@ -31,7 +31,7 @@ THUMBNAIL_HEIGHT, WIDE_WIDTH = 200, 1300
 CHART_WIDTH = 1400
 PAGE_CHART_WIDTH = 1000
 LADDER = "21, 21 | 41, 41 | 81, 81 | 161, 161 | 321, 321"
-# Scene, options of `perideal study work_precision`, and the charts that are kept.
+# Scene, options of `./run study work_precision`, and the charts that are kept.
 CHARTS = (("prm/coupling/insulated_crack.prm",
            ["-s", "Time/Steady=true", "--cells", LADDER, "--reference", "240, 240 | 480, 480 | 960, 960"],
            {"error_over_work": "work_precision_insulated_crack", "error_over_wall_time": "work_precision_insulated_crack_time"}),
@@ -152,11 +152,17 @@ def write_tables():
     write_between_marks(ROOT / "README.md", [row_of(ROOT / "prm" / name, ROOT) for name in OF_README])
 
 
+def study(program, arguments, **options):
+    """By the package in python/, on this program."""
+    variables = dict(os.environ, PERIDEAL_EXECUTABLE=str(program), PYTHONPATH=str(ROOT / "python"))
+    return subprocess.run([sys.executable, "-m", "perideal", *arguments], check=True, cwd=ROOT, env=variables, **options)
+
+
 def make_charts(program):
     """Accuracy against cost."""
     for scene, options, charts in CHARTS:
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([program, "study", "work_precision", scene, "--output", folder, "--repeat", "3", *options], check=True, cwd=ROOT)
+            study(program, ["study", "work_precision", scene, "--output", folder, "--repeat", "3", *options])
             subprocess.run([sys.executable, str(ROOT / "applications" / "report" / "study.py"), folder], check=True, stdout=subprocess.DEVNULL)
             for figure, name in charts.items():
                 save(cropped(Image.open(Path(folder) / f"{figure}.png")), name, width=CHART_WIDTH)
@@ -172,7 +178,7 @@ def make_charts_of_page(program, names, keep):
         print("perideal", " ".join(f'"{word}"' if " " in word else word for word in command), flush=True)
         if not keep:
             for more in ([], ["--only", "auto"] + ([] if "--repeat" in options else ["--repeat", "5"])):  # short runs are uncertain
-                done = subprocess.run([program, *command, *more], check=True, cwd=ROOT, capture_output=True, text=True)
+                done = study(program, [*command, *more], capture_output=True, text=True)
             (folder / "said.txt").write_text(done.stdout, encoding="utf-8")
         subprocess.run([sys.executable, str(ROOT / "applications" / "report" / "study.py"), str(folder)], check=True, stdout=subprocess.DEVNULL)
         for chart in charts:

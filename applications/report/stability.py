@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Where a scene is computed well: the maps of `perideal study stability`, from stability.json."""
+"""Where a scene is computed well: the maps of `./run study stability`, from stability.json."""
 
 import json
 import math
@@ -58,7 +58,7 @@ def read(directory):
         raise StudyError(f"'{path}' is no JSON: {fault}") from None
     for key in ("title", "maps", "left out", "cells"):
         if key not in data:
-            raise StudyError(f"'{path}' has no '{key}': it is not from 'perideal study stability'")
+            raise StudyError(f"'{path}' has no '{key}': it is not from './run study stability'")
     return data
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Accuracy against cost: the charts and tables of `perideal study work_precision`, from work_precision.json."""
+"""Accuracy against cost: the charts and tables of `./run study work_precision`, from work_precision.json."""
 
 import json
 from html import escape
@@ -45,7 +45,7 @@ def read(directory):
         raise StudyError(f"'{path}' is no JSON: {fault}") from None
     for key in ("rows", "families", "front", "reference", "left out"):
         if key not in data:
-            raise StudyError(f"'{path}' has no '{key}': it is not from 'perideal study work_precision'")
+            raise StudyError(f"'{path}' has no '{key}': it is not from './run study work_precision'")
     return data
 
 

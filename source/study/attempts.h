@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/scene/scene_variant.h>
-#include <perideal/study/lattice_ladder.h>
+#include <perideal/study/cracked_box.h>
 
 #include <optional>
 #include <string>

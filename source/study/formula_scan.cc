@@ -3,7 +3,7 @@
 
 #include "formula_scan.h"
 
-#include <perideal/study/lattice_ladder.h>
+#include <perideal/study/cracked_box.h>
 
 #include <algorithm>
 #include <array>

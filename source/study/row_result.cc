@@ -234,7 +234,14 @@ namespace PeriDeal
 
   bool RowResult::is_wrong(const StudyRow &row) const
   {
-    return status != Status::missing && (status == Status::failed) != row.fails;
+    return status != Status::missing && (status == Status::failed) != row.fails &&
+           !has_failed_as_it_may(row);
+  }
+
+
+  bool RowResult::has_failed_as_it_may(const StudyRow &row) const
+  {
+    return status == Status::failed && row.may_fail;
   }
 
 

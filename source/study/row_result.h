@@ -37,6 +37,8 @@ namespace PeriDeal
 
     /** Failed without being expected to, or the other way round. */
     bool is_wrong(const StudyRow &row) const;
+
+    bool has_failed_as_it_may(const StudyRow &row) const;
   };
 
   /**

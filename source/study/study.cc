@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "study_rows.h"
+#include "row_result.h"
 #include "study_tables.h"
 
 namespace PeriDeal
@@ -129,86 +129,94 @@ namespace PeriDeal
       const std::string status = result.status_of(row);
       return result.message.empty() ? status : status + ": " + result.message;
     }
-  } // namespace
 
 
-  void throw_if_wrong(const Study &study, const ComputedStudy &computed)
-  {
-    std::string  list;
-    unsigned int n_wrong = 0;
-    for (std::size_t k = 0; k < computed.results.size(); ++k)
-      if (computed.selected[k] && computed.results[k].is_wrong(study.rows[k]))
+    /** All rows of a study, which of them were asked for, and what has become of each. */
+    struct ComputedStudy
+    {
+      std::vector<CheckedRow> rows;
+      std::vector<bool>       selected;
+      std::vector<RowResult>  results;
+    };
+
+
+    /** Throws the UserError that lists the rows that did not end as they should. */
+    void throw_if_wrong(const Study &study, const ComputedStudy &computed)
+    {
+      std::string  list;
+      unsigned int n_wrong = 0, n_rows = 0;
+      for (std::size_t k = 0; k < computed.results.size(); ++k)
         {
+          if (!computed.selected[k] || computed.results[k].has_failed_as_it_may(study.rows[k]))
+            continue;
+          ++n_rows;
+          if (!computed.results[k].is_wrong(study.rows[k]))
+            continue;
           ++n_wrong;
           list += "\n  " + study.rows[k].name + ": " + outcome(computed.results[k], study.rows[k]);
         }
-    const auto n_rows = std::count(computed.selected.begin(), computed.selected.end(), true);
-    AssertThrow(n_wrong == 0,
-                UserError(study.source + ": " + std::to_string(n_wrong) + " of " +
-                          std::to_string(n_rows) + " rows did not end as they should:" + list));
-  }
+      AssertThrow(n_wrong == 0,
+                  UserError(study.source + ": " + std::to_string(n_wrong) + " of " +
+                            std::to_string(n_rows) + " rows did not end as they should:" + list));
+    }
 
 
-  void print_line(const MPI_Comm communicator, const bool quiet, const std::string &text)
-  {
-    Log(communicator, quiet).print(text + "\n");
-  }
+    /** Compute the rows that are asked for, and write the tables. Collective. */
+    ComputedStudy compute_study(const Study        &study,
+                                const StudyOptions &options,
+                                const MPI_Comm      communicator)
+    {
+      ComputedStudy            computed;
+      std::vector<std::string> names;
+      for (const StudyRow &row : study.rows)
+        names.push_back(row.name);
+      const std::vector<std::string> folders = folder_names(names);
+      AssertThrow(study.output.find_first_of("#\n\r\\") == std::string::npos,
+                  UserError(study.source + ": \"output\" (or --output): '" + study.output +
+                            "' must not contain #, \\ or line ends."));
+      const std::vector<bool> &selected = computed.selected = selected_rows(study, options);
+      std::vector<CheckedRow> &rows                         = computed.rows;
+      std::vector<RowResult>  &results                      = computed.results;
+      for (std::size_t k = 0; k < study.rows.size(); ++k)
+        rows.push_back(
+          check_row(study, study.rows[k], study.output + "/rows/" + folders[k], communicator));
+      make_directory(study, communicator);
+      for (const CheckedRow &row : rows)
+        results.push_back(read_row(row, communicator));
 
-
-  ComputedStudy compute_study(const Study        &study,
-                              const StudyOptions &options,
-                              const MPI_Comm      communicator)
-  {
-    ComputedStudy            computed;
-    std::vector<std::string> names;
-    for (const StudyRow &row : study.rows)
-      names.push_back(row.name);
-    const std::vector<std::string> folders = folder_names(names);
-    AssertThrow(study.output.find_first_of("#\n\r\\") == std::string::npos,
-                UserError(study.source + ": \"output\" (or --output): '" + study.output +
-                          "' must not contain #, \\ or line ends."));
-    const std::vector<bool> &selected = computed.selected = selected_rows(study, options);
-    std::vector<CheckedRow> &rows                         = computed.rows;
-    std::vector<RowResult>  &results                      = computed.results;
-    for (std::size_t k = 0; k < study.rows.size(); ++k)
-      rows.push_back(
-        check_row(study, study.rows[k], study.output + "/rows/" + folders[k], communicator));
-    make_directory(study, communicator);
-    for (const CheckedRow &row : rows)
-      results.push_back(read_row(row, communicator));
-
-    const Log   log(communicator, options.quiet);
-    const auto  n_rows = std::count(selected.begin(), selected.end(), true);
-    std::size_t number = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      {
-        if (!selected[k])
-          continue;
-        log.print("[" + std::to_string(++number) + "/" + std::to_string(n_rows) + "] " +
-                  rows[k].row.name + ": ");
-        const bool enough =
-          dealii::Utilities::MPI::broadcast(communicator, repeats_of(results[k]), 0) >=
-          options.repeats;
-        if (results[k].status == RowResult::Status::finished && enough && !options.redo)
-          {
-            log.print("kept\n");
+      const Log   log(communicator, options.quiet);
+      const auto  n_rows = std::count(selected.begin(), selected.end(), true);
+      std::size_t number = 0;
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        {
+          if (!selected[k])
             continue;
-          }
-        results[k] = compute_row(rows[k], options.repeats, communicator);
-        write_tables(study, rows, results, communicator);
-        log.print(results[k].status == RowResult::Status::failed ?
-                    outcome(results[k], rows[k].row) + "\n" :
-                    readable_duration(results[k].record.value("wall time", 0.)) + "\n");
-      }
-    write_tables(study, rows, results, communicator);
-    return computed;
-  }
+          log.print("[" + std::to_string(++number) + "/" + std::to_string(n_rows) + "] " +
+                    rows[k].row.name + ": ");
+          const bool enough =
+            dealii::Utilities::MPI::broadcast(communicator, repeats_of(results[k]), 0) >=
+            options.repeats;
+          if (results[k].status == RowResult::Status::finished && enough && !options.redo)
+            {
+              log.print("kept\n");
+              continue;
+            }
+          results[k] = compute_row(rows[k], options.repeats, communicator);
+          write_tables(study, rows, results, communicator);
+          log.print(results[k].status == RowResult::Status::failed ?
+                      outcome(results[k], rows[k].row) + "\n" :
+                      readable_duration(results[k].record.value("wall time", 0.)) + "\n");
+        }
+      write_tables(study, rows, results, communicator);
+      return computed;
+    }
+  } // namespace
 
 
   void run_study(const Study &study, const StudyOptions &options, const MPI_Comm communicator)
   {
     const ComputedStudy computed = compute_study(study, options, communicator);
-    print_line(communicator, options.quiet, "Results: " + study.output);
+    Log(communicator, options.quiet).print("Results: " + study.output + "\n");
     throw_if_wrong(study, computed);
   }
 } // namespace PeriDeal

@@ -175,16 +175,19 @@ namespace PeriDeal
                            object["name"].is_string();
         const std::string where =
           study.source + ": " + (named ? "row '" + object["name"].get<std::string>() + "'" : label);
-        const StudyObject row(object,
-                              where,
-                              {"name", "scene", "set", "vary", "quick", "group", "x", "fails"});
+        const StudyObject row(
+          object,
+          where,
+          {"name", "row", "scene", "set", "vary", "quick", "group", "x", "fails", "may fail"});
         StudyRow          common_row;
-        common_row.sweep = row.text("name", true);
+        const std::string name = row.text("name", true);
+        common_row.sweep       = row.text("row", false, name);
         common_row.scene =
           find_scene(row.text("scene", true), study_file, where + ", key 'scene'", communicator);
         common_row.group    = row.text("group");
         common_row.quick    = row.boolean("quick");
         common_row.fails    = row.boolean("fails");
+        common_row.may_fail = row.boolean("may fail");
         common_row.settings = common;
         read_x(row, where, common_row);
 
@@ -203,11 +206,12 @@ namespace PeriDeal
               if (setting.first == variation.first)
                 row.error("vary", "'" + variation.first + "' is in 'set', too.");
           }
-        add(common_row, variations, where);
+        add(common_row, name, variations, where);
       }
 
       /** All combinations. */
       void add(const StudyRow               &common_row,
+               const std::string            &name,
                const std::vector<Variation> &variations,
                const std::string            &where)
       {
@@ -224,7 +228,7 @@ namespace PeriDeal
         for (const std::vector<Setting> &combination : combinations(variations))
           {
             StudyRow row = common_row;
-            row.name     = combination_name(row.sweep, combination);
+            row.name     = combination_name(name, combination);
             for (const Setting &setting : combination)
               set(row.settings, setting);
             AssertThrow(names.insert(row.name).second,
@@ -368,10 +372,13 @@ namespace PeriDeal
     text = dealii::Utilities::MPI::broadcast(communicator, text, 0);
 
     const Json        json = parse_study_text(text, file_name);
-    const StudyObject file(json, file_name, {"title", "text", "output", "set", "rows", "figures"});
+    const StudyObject file(
+      json,
+      file_name,
+      {"title", "text", "output", "set", "rows", "figures", "source", "columns", "varied"});
     const std::string stem = fs::path(file_name).stem().string();
     Study             study;
-    study.source = file_name;
+    study.source = file.text("source", false, file_name);
     study.title  = file.text("title", false, stem);
     study.text   = file.text("text");
     study.output = file.text("output", false, "output/studies/" + stem);
@@ -388,6 +395,10 @@ namespace PeriDeal
     RowReader reader(study, file_name, common, communicator);
     for (std::size_t k = 0; k < rows.size(); ++k)
       reader.read(rows[k], k + 1);
+    if (file.has("columns"))
+      study.columns = file.texts("columns");
+    for (const std::string &entry : file.texts("varied"))
+      study.varied.insert(entry);
     const std::vector<Json> figures = file.objects("figures");
     for (std::size_t k = 0; k < figures.size(); ++k)
       read_figure(study, figures[k], k + 1);
@@ -422,7 +433,7 @@ namespace PeriDeal
         StudyRow row;
         row.sweep = stems.size() == scenes.size() ? stem(scene) : scene;
         row.scene = find_scene(scene, no_file, "command line", communicator);
-        reader.add(row, variations, "command line");
+        reader.add(row, row.sweep, variations, "command line");
       }
     return study;
   }

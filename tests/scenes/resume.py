@@ -29,7 +29,7 @@ import time
 import h5py
 
 from scene_test import SOURCE_DIR, Run, check, check_clean_error, check_message, run_parts, temporary_folder
-from scene_test import EXECUTABLE, _environment, _on_ranks  # signals need the process itself
+from scene_test import EXECUTABLE, environment, on_processes  # signals need the process itself
 
 IMPLICIT = 1e-12
 
@@ -70,12 +70,12 @@ def command(scene, folder, overrides, more, ranks):
     words = [EXECUTABLE, "run", os.path.join(SOURCE_DIR, "prm", scene), "-s", f"Output directory={folder}"]
     for entry, value in overrides.items():
         words += ["-s", f"{entry}={value}"]
-    return _on_ranks(words + list(more), ranks)
+    return on_processes(words + list(more), ranks)
 
 
 def run(scene, folder, overrides, more=(), ranks=1):
     """A run in a folder; the exit status is the caller's."""
-    return subprocess.run(command(scene, folder, overrides, more, ranks), env=_environment(), capture_output=True, text=True, timeout=900, check=False)
+    return subprocess.run(command(scene, folder, overrides, more, ranks), env=environment(), capture_output=True, text=True, timeout=900, check=False)
 
 
 def new_folder():
@@ -196,7 +196,7 @@ def check_running():
     check(run(scene, whole, RUNNING).returncode == 0, scene)
     all_broken = last_broken(whole)
     check(all_broken > 200, f"bonds break: {all_broken}")
-    process = subprocess.Popen(command(scene, resumed, RUNNING, (), 1), env=_environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command(scene, resumed, RUNNING, (), 1), env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     while process.poll() is None and not last_broken(resumed) > 0.1 * all_broken:
         time.sleep(0.02)
     process.send_signal(signal.SIGTERM)
@@ -315,7 +315,7 @@ def check_interrupted():
         settings, whole = long_enough(scene, settings)
         for ranks in (1, 2):
             what, folder = f"{name} on {ranks}", new_folder()
-            process = subprocess.Popen(command(scene, folder, settings, (), ranks), env=_environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            process = subprocess.Popen(command(scene, folder, settings, (), ranks), env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                        text=True, start_new_session=True)
             while "stepper" not in process.stdout.readline() and process.poll() is None:
                 pass
@@ -345,7 +345,7 @@ def run_with_signals(kind, start, took, scene, settings, ranks):
     """A run that is ended at up to 5 random moments, after there is something to keep at start, and goes on each time: its folder and how often."""
     folder, more, n_stops = new_folder(), [], 0
     for attempt in range(8):
-        process = subprocess.Popen(command(scene, folder, settings, more, ranks), env=_environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen(command(scene, folder, settings, more, ranks), env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             process.wait(start + random.uniform(0., 0.4) * max(took - start, 0.5) if attempt < 5 else 900)
         except subprocess.TimeoutExpired:

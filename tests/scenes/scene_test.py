@@ -14,8 +14,8 @@
 A failed check is printed and counted, and the script goes on; finish() ends it with exit status 1 if any failed. A scene
 that should have run and did not ends the script at once.
 
-Where PERIDEAL_SCENE_SERVER names the program of scene_server.cc, as ctest does unless a test says EACH_ALONE, the scenes of a
-script are computed one after the other in one process for each number of processes; else each by a program of its own.
+Where PERIDEAL_SERVE is set, as ctest does unless a test says EACH_ALONE, the scenes of a script are computed one after the other by
+`perideal serve`, one for each number of processes; else each by a program of its own.
 """
 
 import atexit
@@ -23,7 +23,6 @@ import csv
 import json
 import math
 import os
-import select
 import shutil
 import subprocess
 import sys
@@ -31,9 +30,14 @@ import tempfile
 
 SOURCE_DIR = os.environ.get(
     "PERIDEAL_SOURCE_DIR", os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
-EXECUTABLE = os.environ.get("PERIDEAL_EXECUTABLE", os.path.join(SOURCE_DIR, "build/release/applications/perideal"))
-SERVER = os.environ.get("PERIDEAL_SCENE_SERVER", "")
-MPIRUN = os.environ.get("PERIDEAL_MPIRUN", "mpirun")
+sys.path.insert(0, os.path.join(SOURCE_DIR, "python"))
+import perideal  # noqa: E402
+from perideal.program import environment, on_processes  # noqa: E402
+
+EXECUTABLE = perideal.find_program()
+SERVE = os.environ.get("PERIDEAL_SERVE", "")
+# Several tests run at once on few cores (tests/CMakeLists.txt).
+os.environ.update(OMPI_MCA_hwloc_base_binding_policy="none", PRTE_MCA_hwloc_default_binding_policy="none", OMPI_MCA_mpi_yield_when_idle="1")
 
 # Models, and what many scripts set.
 FE, PD, COUPLED = "finite elements", "peridynamics", "coupled"
@@ -135,91 +139,41 @@ def _value(text):
         return text
 
 
-def _environment():
-    """Of parallel programs, as in .ci/build.sh."""
-    return dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                OMPI_MCA_rmaps_base_oversubscribe="1", PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe",
-                OMPI_MCA_hwloc_base_binding_policy="none", PRTE_MCA_hwloc_default_binding_policy="none",
-                OMPI_MCA_orte_execute_quiet="1", OMPI_MCA_mpi_yield_when_idle="1")
-
-
-def _on_ranks(command, ranks):
-    """Without the network, of which Open MPI 5 complains where it leads nowhere."""
-    return ["env", "OMPI_MCA_btl=^tcp", MPIRUN, "-np", str(ranks)] + command if ranks > 1 else command
-
-
 def command_and_environment(arguments, ranks=1):
     """How the program is started with any arguments, on any number of processes."""
-    return _on_ranks([EXECUTABLE] + list(arguments), ranks), _environment()
+    return on_processes([EXECUTABLE] + list(arguments), ranks), environment()
 
 
 def run_perideal(arguments, ranks=1, timeout=3000, cwd=None):
     """Run the program with any arguments; returns (exit status, stdout, stderr)."""
-    command, environment = command_and_environment(arguments, ranks)
+    command, variables = command_and_environment(arguments, ranks)
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout, cwd=cwd,
-                          env=environment)
+                          env=variables)
     return done.returncode, done.stdout, done.stderr
 
 
-class _SceneServer:
-    """A running scene_server on a number of processes; one that has ended is started again."""
-
-    running = {}
-
-    def __init__(self, ranks):
-        self.said = tempfile.TemporaryFile()
-        self.process = subprocess.Popen(_on_ranks([SERVER], ranks), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.said,
-                                        cwd=SOURCE_DIR, env=_environment())
-
-    @classmethod
-    def run(cls, ranks, scene, overrides, timeout):
-        """As run_perideal(["run", scene, "-s", ...])."""
-        server = cls.running.get(ranks)
-        if server is None:
-            server = cls.running[ranks] = cls(ranks)
-        with tempfile.TemporaryDirectory(prefix="perideal_said_") as folder:
-            files = {name: os.path.join(folder, name) for name in ("output", "errors")}
-            for name in files.values():
-                open(name, "w").close()
-            status = server.ask({"scene": scene, "overrides": overrides, **files}, timeout)
-            texts = {name: open(path, errors="replace").read() for name, path in files.items()}
-        if status is None:  # it has ended, as a program of its own would have
-            del cls.running[ranks]
-            status = server.process.wait()
-            server.said.seek(0)
-            texts["errors"] += server.said.read().decode(errors="replace")
-        return status, texts["output"], texts["errors"]
-
-    def ask(self, request, timeout):
-        """The exit status of a request; None if the server ended over it."""
-        try:
-            self.process.stdin.write((json.dumps(request) + "\n").encode())
-            self.process.stdin.flush()
-        except BrokenPipeError:
-            return None
-        line = b""
-        while not line.endswith(b"\n"):
-            if not select.select([self.process.stdout], [], [], timeout)[0]:
-                self.process.kill()
-                raise subprocess.TimeoutExpired([SERVER, request["scene"]], timeout)
-            more = os.read(self.process.stdout.fileno(), 4096)
-            if not more:
-                return None
-            line += more
-        return int(line.split()[-1])
-
-    @classmethod
-    def stop_all(cls):
-        for server in cls.running.values():
-            try:
-                server.process.stdin.close()
-                server.process.wait(60)
-            except (OSError, subprocess.TimeoutExpired):
-                server.process.kill()
-        cls.running.clear()
+def run_driver(arguments, ranks=1, timeout=3000, cwd=None):
+    """As run_perideal() by `python3 -m perideal`, which has studies that the program alone does not have."""
+    words = [sys.executable, "-m", "perideal", *arguments] + (["-n", str(ranks)] if ranks > 1 else [])
+    variables = dict(environment(), PYTHONPATH=os.path.join(SOURCE_DIR, "python"))
+    done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout, cwd=cwd, env=variables)
+    return done.returncode, done.stdout, done.stderr
 
 
-atexit.register(_SceneServer.stop_all)
+_servers = {}  # by number of processes
+
+
+def _serve(ranks, arguments, timeout):
+    """As run_perideal() by a program that executes one command after the other; one that has ended is started again."""
+    if ranks not in _servers:
+        _servers[ranks] = perideal.Server(ranks)
+    return _servers[ranks].call(arguments, timeout, cwd=SOURCE_DIR)
+
+
+@atexit.register
+def _stop_servers():
+    for server in _servers.values():
+        server.close()
 
 
 def scene_text(lines):
@@ -263,7 +217,7 @@ def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, ti
     scene: a path within the repository, an absolute path, or the text of a scene (if it has several lines).
     overrides: {"Section/Entry": value}. ranks: number of processes.
     expect_error: the run has to end with exit status 1, one message and no trace, else with 0. keep: leave the folder there.
-    alone: by the program itself, whatever PERIDEAL_SCENE_SERVER says. check_status: a run that fails ends the script.
+    alone: by a program of its own, whatever PERIDEAL_SERVE says. check_status: a run that fails ends the script.
     """
     folder = tempfile.mkdtemp(prefix="perideal_")
     if keep:
@@ -279,8 +233,8 @@ def run_scene(scene, overrides=None, ranks=1, expect_error=False, keep=False, ti
     settings.update(overrides or {})
     settings_list = [f"{entry}={value}" for entry, value in settings.items()]
     arguments = ["run", path] + [word for setting in settings_list for word in ("-s", setting)]
-    if SERVER and not alone:
-        status, stdout, stderr = _SceneServer.run(ranks, path, settings_list, timeout)
+    if SERVE and not alone:
+        status, stdout, stderr = _serve(ranks, arguments, timeout)
     else:
         status, stdout, stderr = run_perideal(arguments, ranks, timeout, cwd=SOURCE_DIR)
     run = Run(settings["Output directory"], status, stdout, stderr)
@@ -442,8 +396,8 @@ def _selftest_of_server():
             if name == "first":
                 run = run_scene(scene, {**small, "Domain/Cells": "many"}, ranks, expect_error=True)
                 check_message(run, "'Cells'", "needs 2 numbers")
-            elif ranks == 1 and ranks in _SceneServer.running:
-                _SceneServer.running[ranks].process.kill()
+            elif ranks == 1 and ranks in _servers:
+                _servers[ranks].process.kill()
                 check(run_scene(scene, small, ranks, check_status=False).returncode != 0, "the end of a server is seen")
 
 

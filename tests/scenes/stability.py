@@ -13,7 +13,7 @@ import os
 import subprocess
 import sys
 
-from scene_test import SOURCE_DIR, check, check_close, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
+from scene_test import SOURCE_DIR, check, check_close, run_driver, run_parts, run_scene, scene_text, temporary_folder, write_file
 from scene_texts import body_of_bonds
 
 PLATE = scene_text("""
@@ -96,7 +96,7 @@ write = functools.partial(write_file, folder=FOLDER)
 def study(scene, *options, output="results", ranks=1, expect=0):
     """Compute; returns (stdout, stderr, stability.json, lines of stability.csv)."""
     directory = os.path.join(FOLDER, output)
-    status, stdout, stderr = run_perideal(["study", "stability", scene, "--output", directory, *options], ranks, 600, cwd=SOURCE_DIR)
+    status, stdout, stderr = run_driver(["study", "stability", scene, "--output", directory, *options], ranks, 600, cwd=SOURCE_DIR)
     check(status == expect, f"stability {options}: exit status {status} where {expect} was expected\n{stdout[-2000:]}{stderr[-2000:]}")
     if status != 0:
         return stdout, stderr, None, None
@@ -265,7 +265,7 @@ def mistakes():
     stdout, stderr, _, _ = study(write("bar.prm", BAR), "--maps", "growth, error", "--quick", *short, output="mistakes", expect=1)
     check("error: 18 points" in stdout and "No point" in stderr and "growth: " in stderr and "longer than the body" in stderr, f"no points:\n{stdout}{stderr}")
     for arguments in (["stability"], ["stability", plate, plate], [plate, "--random", "3"], ["work_precision", plate, "--maps", "growth"]):
-        status, _, stderr = run_perideal(["study", *arguments])
+        status, _, stderr = run_driver(["study", *arguments])
         check(status == 1 and "stability" in stderr, f"study {arguments}: {stderr}")
 
 

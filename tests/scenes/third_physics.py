@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 from scene_test import SOURCE_DIR, Run, check, check_clean_error, check_message, finish, temporary_folder
-from scene_test import _environment, _on_ranks
+from scene_test import environment, on_processes
 
 sys.path.insert(0, os.path.join(SOURCE_DIR, "tests", "reference"))
 
@@ -29,7 +29,7 @@ def run(*overrides, ranks=1, folder=None):
     if folder is None:
         folder = temporary_folder()
     words = [PROGRAM, SCENE, f"Output directory={folder}", f"Time/Time step={STEP}", *overrides]
-    result = subprocess.run(_on_ranks(words, ranks), env=_environment(), capture_output=True, text=True, timeout=300, check=False)
+    result = subprocess.run(on_processes(words, ranks), env=environment(), capture_output=True, text=True, timeout=300, check=False)
     return Run(folder, result.returncode, result.stdout, result.stderr)
 
 

@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-from scene_test import SOURCE_DIR, check, check_close, check_less, run_parts, run_perideal, scene_text, temporary_folder, write_file
+from scene_test import SOURCE_DIR, check, check_close, check_less, run_driver, run_parts, run_perideal, scene_text, temporary_folder, write_file
 
 PLATE = scene_text("""
 Title = Small plate with a crack
@@ -35,7 +35,7 @@ SMALL = ["--cells", "9, 9 | 17, 17", "--budget", "8000"]
 def study(scene, *options, output="results", ranks=1, expect=0):
     """Compute; returns (stdout, stderr, directory)."""
     directory = os.path.join(FOLDER, output)
-    status, stdout, stderr = run_perideal(["study", "work_precision", scene, "--output", directory, *options], ranks, 600, cwd=SOURCE_DIR)
+    status, stdout, stderr = run_driver(["study", "work_precision", scene, "--output", directory, *options], ranks, 600, cwd=SOURCE_DIR)
     check(status == expect, f"work_precision {options}: exit status {status} where {expect} was expected\n{stdout[-2000:]}{stderr[-2000:]}")
     return stdout, stderr, directory
 
@@ -325,8 +325,10 @@ def mistakes():
         for word in words:
             check(word in stderr, f"{what}: the message does not say {word!r}:\n{stderr}")
     for arguments in (["work_precision"], ["work_precision", plate, plate], [plate, "--cells", "9, 9 | 17, 17"]):
-        status, _, stderr = run_perideal(["study", *arguments])
+        status, _, stderr = run_driver(["study", *arguments])
         check(status == 1 and "work_precision" in stderr, f"study {arguments}: {stderr}")
+    status, _, stderr = run_perideal(["study", "work_precision", plate])
+    check(status == 1 and "python3 -m perideal study work_precision" in stderr, f"the program says where it is: {stderr}")
     _, stderr, _ = study(plate, "--cells", "9, 9 | x", output="mistakes", ranks=2, expect=1)
     check(stderr.count("perideal: error") == 1, f"one message on two processes: {stderr}")
 

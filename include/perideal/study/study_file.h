@@ -25,8 +25,9 @@ namespace PeriDeal
     std::vector<Setting>  settings; // overrides of all rows and of this one, each entry once
     std::optional<double> x;        // a number for figures,
     std::string           x_entry;  // or the entry whose value it is
-    bool                  quick = false;
-    bool                  fails = false; // has to end with a UserError
+    bool                  quick    = false;
+    bool                  fails    = false; // has to end with a UserError
+    bool                  may_fail = false; // may end with one
   };
 
 
@@ -57,6 +58,10 @@ namespace PeriDeal
    * Read a study file (JSON with comments), find its scenes relative to the working directory, the
    * folder of the study file, or the parents of that. Whether entries exist is checked, whether
    * scenes are valid is not. Throws UserError for all mistakes, with file, row and key; collective.
+   *
+   * Programs that plan a study say besides what messages call it ("source"), which entries are
+   * columns and which of them vary ("columns", "varied"; else those that rows set and vary), and
+   * what rows have in common ("row", else their name).
    */
   Study read_study(const std::string &file_name, const MPI_Comm communicator);
 
