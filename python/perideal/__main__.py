@@ -7,6 +7,7 @@
 
 import argparse
 import os
+import signal
 import sys
 
 from . import program
@@ -127,8 +128,15 @@ def _stability(options) -> int:
     return 0
 
 
+def _stop(number, _):
+    """A signal ends a study as Ctrl-C does."""
+    raise KeyboardInterrupt({signal.SIGTERM: "a request to end (SIGTERM)", signal.SIGUSR1: "a request to stop (SIGUSR1)"}[number])
+
+
 def main(words) -> int:
     """Exit status."""
+    for number in (signal.SIGTERM, signal.SIGUSR1):
+        signal.signal(number, _stop)
     try:
         if words[:1] == ["study"] and words[1:2] and words[1] in KINDS:
             options = _parse(words[1], words[2:])
@@ -141,8 +149,9 @@ def main(words) -> int:
     except Error as error:
         print(f"\nperideal: {'error: ' if error.status == 1 else ''}{error}", file=sys.stderr)
         return error.status
-    except KeyboardInterrupt:
-        return 3  # the program has said so
+    except KeyboardInterrupt as stop:
+        print(f"\nperideal: stopped by {str(stop) or 'an interrupt (SIGINT)'}.", file=sys.stderr)
+        return 3
     return 0
 
 

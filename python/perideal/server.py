@@ -29,7 +29,9 @@ class Server:
     def __enter__(self):
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, kind, *_):
+        if kind is KeyboardInterrupt and self.process is not None:
+            self.process.terminate()  # in the midst of a command
         self.close()
 
     def run(self, scene, overrides: Overrides = (), folder=None, timeout: Optional[float] = None) -> Results:

@@ -3,7 +3,12 @@
 """Numbers and names as the program writes them."""
 
 import math
-from typing import Iterable
+from typing import Iterable, List
+
+
+def split_list(text: str, separator: str) -> List[str]:
+    """The pieces between separators; none of a text that is empty."""
+    return [piece.strip() for piece in text.split(separator)] if text.strip() else []
 
 
 def number_text(value: float) -> str:
@@ -32,7 +37,8 @@ def readable_duration(seconds: float) -> str:
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """" Did you mean 'x'?", the name nearest in edit distance, or nothing where none is near enough to be what was meant."""
-    distance, best = min(((_edit_distance(name.lower(), one.lower()), one) for one in known), key=lambda pair: pair[0])
+    distances = ((_edit_distance(name.lower(), one.lower()), one) for one in known)
+    distance, best = min(distances, key=lambda pair: pair[0], default=(len(name), ""))
     return f" Did you mean '{best}'?" if distance < len(name) // 2 + 1 else ""
 
 

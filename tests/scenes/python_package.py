@@ -285,6 +285,13 @@ def stopped():
         check(process.returncode == 3 and "interrupt" in err, f"a server after an interrupt: {process.returncode}, {line}{out}{err}")
         check(not request or json.loads(out)["status"] == 3, f"the answer to a run that was stopped: {out}")
     variables = dict(environment(), PYTHONPATH=os.path.join(SOURCE_DIR, "python"))
+    for number, reason in ((signal.SIGINT, "an interrupt (SIGINT)"), (signal.SIGUSR1, "a request to stop (SIGUSR1)")):
+        words = [sys.executable, "-m", "perideal", "study", "stability", plate, "-s", "Time/Steady=false", "--output", temporary_folder()]
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=variables)
+        process.stdout.readline()
+        process.send_signal(number)
+        _, err = process.communicate(timeout=60)
+        check(process.returncode == 3 and err == f"\nperideal: stopped by {reason}.\n", f"maps after a signal: {process.returncode}, {err}")
     words = [sys.executable, "-m", "perideal", "study", "work_precision", plate, "--no-auto", "--cells", "9, 9 | 17, 17", "--output", temporary_folder()]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=variables)
     while "[3/" not in process.stdout.readline():

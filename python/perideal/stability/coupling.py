@@ -7,9 +7,10 @@ import math
 from pathlib import Path
 from typing import Dict, List
 
+from ..drivers import mistake_in, write_text
 from ..program import Error
 from ..words import full_precision
-from .scene import COUPLED, Map, MappedScene, Point, Random, mistake
+from .scene import COUPLED, Map, MappedScene, Point, Random
 
 SCHEMES = ["exchange", "splice", "blending"]
 # Where there are bonds in the unit square.
@@ -74,9 +75,7 @@ class EigenvalueMap(Map):
                         try:
                             points.append(self._point(Square(scheme, zone, contrast, distortion)))
                         except Error as error:
-                            if error.status != 1 or isinstance(error, _CannotWrite):
-                                raise
-                            self.left_out.append(f"{scheme}, zone {zone}: {mistake(error)}")
+                            self.left_out.append(f"{scheme}, zone {zone}: {mistake_in(error)}")
         return points
 
     def random_point(self, inside, random: Random):
@@ -103,30 +102,19 @@ class EigenvalueMap(Map):
     def _point(self, square: Square) -> Point:
         parameters = {"scheme": square.scheme, "zone": square.zone, "contrast": square.contrast, "distortion": square.distortion}
         if square.distortion != 0:  # only distorted cells come from a file: bonds of a lattice are calibrated
-            _write(self._mesh_file, mesh_text(N, square.distortion))
+            write_text(self._mesh_file, mesh_text(N, square.distortion))
         try:
             found = self.scene.ask_body(COUPLED, self._settings(square), {"ask": "certificate"})
         except Error as error:
             if square.distortion < 0.5:  # only cells that are inside out are part of the map
                 raise
-            return Point({**parameters, "fault": mistake(error)}, -math.inf, math.nan, "refused")
+            return Point({**parameters, "fault": mistake_in(error)}, -math.inf, math.nan, "refused")
         finally:
             if square.distortion != 0:
                 Path(self._mesh_file).unlink(missing_ok=True)
         lowest, fault = float(found["lowest eigenvalue"]), found["fault"]
         verdict = ("safe" if lowest > 0 else "fails") if not fault else "refused" if square.scheme == "exchange" else "warned"
         return Point({**parameters, **({"fault": fault} if fault else {})}, float(found["lowest remainder"]), lowest, verdict)
-
-
-class _CannotWrite(Error):
-    """No fault of a square."""
-
-
-def _write(path: str, text: str) -> None:
-    try:
-        Path(path).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise _CannotWrite(f"cannot write '{path}': {error.strerror}. Is the disk full, or was the directory removed during the run?") from None
 
 
 class HeatMap(Map):
@@ -148,7 +136,7 @@ class HeatMap(Map):
                 try:
                     points += self._points(scheme, ratio, 0.4, 3 if quick else 10)
                 except Error as error:
-                    self.left_out.append(f"{scheme}, m = {ratio}: {mistake(error)}")
+                    self.left_out.append(f"{scheme}, m = {ratio}: {mistake_in(error)}")
         return points
 
     def random_point(self, inside, random: Random):

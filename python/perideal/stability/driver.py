@@ -8,13 +8,14 @@ import time
 from pathlib import Path
 from typing import List, Sequence, Type
 
+from ..drivers import mistake_in, require_scene, write_text
 from ..program import Error
 from ..server import Server
-from ..words import did_you_mean
+from ..words import did_you_mean, split_list
 from ..work_precision.lattice import name_of
 from .coupling import EigenvalueMap, HeatMap
 from .iterations import IterationsMap
-from .scene import Map, MappedScene, Random, mistake
+from .scene import Map, MappedScene, Random
 from .steps import GrowthMap, StepLimitMap
 from .strip import ConductionMap, SurfaceMap
 from .tables import RandomPoint, Result, describe, stability_csv, stability_json
@@ -42,7 +43,7 @@ def wanted_maps(text: str) -> List[Type[Map]]:
     if not text:
         return MAPS
     known = {one.name: one for one in MAPS}
-    names = [name.strip() for name in text.split(",") if name.strip()]
+    names = split_list(text, ",")
     for name in names:
         if name not in known:
             raise Error(f"--maps names '{name}', which is no map.{did_you_mean(name, known)} Known: {', '.join(known)}.")
@@ -61,7 +62,7 @@ def _random_points(of_map: Map, options: Options, result: Result) -> None:
                 try:
                     point = of_map.random_point(inside, random)
                 except Error as error:
-                    result.left_out.append(f"random point: {mistake(error)}")
+                    result.left_out.append(f"random point: {mistake_in(error)}")
                     continue
                 if point is not None:
                     result.random.append(RandomPoint(inside, point))
@@ -82,13 +83,6 @@ def _compute(kind: Type[Map], scene: MappedScene, options: Options) -> Result:
     return result
 
 
-def _write(folder: Path, name: str, text: str) -> None:
-    try:
-        (folder / name).write_text(text, encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise Error(f"cannot write '{folder}/{name}': {error.strerror}. Is the disk full, or was the directory removed during the run?") from None
-
-
 def run(file: str, options: Options = Options()) -> None:
     """Compute the maps of a scene and write them.
 
@@ -100,6 +94,7 @@ def run(file: str, options: Options = Options()) -> None:
             print(text, flush=True)
 
     wanted = wanted_maps(options.maps)
+    require_scene(file)
     folder = options.output or f"output/studies/{Path(file).stem}_stability"
     results: List[Result] = []
     with Server(options.processes) as server, tempfile.TemporaryDirectory(prefix="perideal_") as temporary:
@@ -112,8 +107,8 @@ def run(file: str, options: Options = Options()) -> None:
             raise Error(f"--output: cannot use '{folder}': {error.strerror}. Choose a directory that you may write to.") from None
 
         def write():
-            _write(Path(folder), "stability.csv", stability_csv(results))
-            _write(Path(folder), "stability.json", stability_json(scene, options.seed, results))
+            write_text(f"{folder}/stability.csv", stability_csv(results))
+            write_text(f"{folder}/stability.json", stability_json(scene, options.seed, results))
 
         for kind in wanted:
             results.append(_compute(kind, scene, options))

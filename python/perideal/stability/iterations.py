@@ -6,10 +6,11 @@ import dataclasses
 import math
 from typing import Dict, List
 
+from ..drivers import mistake_in
 from ..program import Error
 from ..words import full_precision
 from ..work_precision.lattice import to_text
-from .scene import COUPLED, ELEMENTS, Map, Point, Random, mistake
+from .scene import COUPLED, ELEMENTS, Map, Point, Random
 
 DIRECT = 50  # unknowns of the coarsest level, of 1000: multigrid has levels
 
@@ -87,8 +88,8 @@ class IterationsMap(Map):
     def _settings(self, body: Body) -> Dict[str, str]:
         dim = self.scene.dim
         n = 10 if dim == 3 else 32
-        settings = {"Domain/Lower corner": ", ".join(["0"] * dim), "Domain/Upper corner": ", ".join([full_precision(body.aspect)] + ["1"] * (dim - 1)),
-                    "Domain/Cells": to_text([n] * dim)}
+        settings = {"Domain/Lower corner": to_text([0] * dim), "Domain/Cells": to_text([n] * dim),
+                    "Domain/Upper corner": ", ".join([full_precision(body.aspect)] + ["1"] * (dim - 1))}
         if body.model != ELEMENTS:
             settings["Peridynamics/Horizon ratio"] = full_precision(self.scene.bonds["m"])
         if body.model == COUPLED:
@@ -113,7 +114,7 @@ class IterationsMap(Map):
         try:
             answer = self.scene.ask_body(body.model, self._settings(body), {"ask": "iterations", "direct up to": DIRECT})
         except Error as error:  # the coupling is refused, for instance
-            return Point({**parameters, "fault": mistake(error)}, math.nan, math.inf, "refused")
+            return Point({**parameters, "fault": mistake_in(error)}, math.nan, math.inf, "refused")
         if "fault" in answer:
             return Point({**parameters, "fault": answer["fault"]}, float(answer["allowed"]), math.inf, "fails")
         return Point(parameters, float(answer["allowed"]), float(answer["iterations"]), "safe")

@@ -11,19 +11,12 @@ from typing import Dict, List, Optional, Sequence
 
 import numpy as np
 
-from ..program import Error, arguments_of, require_success
+from ..program import arguments_of, require_success
 from ..server import Server
 from ..words import full_precision
 from ..work_precision.lattice import to_text
 
 ELEMENTS, BONDS, COUPLED = "finite elements", "peridynamics", "coupled"
-
-
-def mistake(error: Error) -> str:
-    """What is wrong with settings, without the words for overrides, which stand on no command line there. Faults of the program are raised on."""
-    if error.status != 1:
-        raise error
-    return str(error).removeprefix("command line: ")
 
 
 @dataclasses.dataclass
@@ -120,7 +113,8 @@ class MappedScene:
         changes that the scene cannot have."""
         all_changes = {f"Output/{entry}": "" for entry in ("Write at", "Write every", "Probes", "Line", "Grid")}
         if self.cells:
-            all_changes.update({"Domain/Node spacing": "", "Domain/Cells": to_text(self.coarse), "Cracks/Nodes on cracks": "left"})  # these very cells
+            all_changes.update({"Domain/Node spacing": "", "Domain/Cells": to_text(self.coarse),
+                                "Cracks/Nodes on cracks": "left"})  # these very cells
             if model != ELEMENTS:
                 all_changes.update({"Peridynamics/Horizon": "", "Peridynamics/Horizon ratio": full_precision(self.bonds["m"])})
         return self._ask(self.file, [*arguments_of(self.overrides), *arguments_of(all_changes), *arguments_of({"Models": model}),

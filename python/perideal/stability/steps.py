@@ -3,12 +3,12 @@
 """Maps of the steps of explicit methods: the longest stable one, and growth beyond it."""
 
 import dataclasses
-import math
 from typing import List, Optional
 
+from ..drivers import mistake_in
 from ..program import Error
 from ..words import full_precision
-from .scene import ELEMENTS, Map, Point, Random, mistake
+from .scene import ELEMENTS, Map, Point, Random
 
 KERNELS = ["constant", "conical", "gaussian"]
 NEVER, MAY, BROKEN = "never break", "may break", "some broken"  # what may happen to bonds in a motion
@@ -124,7 +124,7 @@ class StepLimitMap(StepMap):
             try:
                 answers = self.ask(body, runs)
             except Error as error:
-                self.left_out.append(f"{body.text()}: {mistake(error)}")
+                self.left_out.append(f"{body.text()}: {mistake_in(error)}")
                 continue
             for method, answer in zip(methods, answers):
                 if answer is None:
@@ -154,7 +154,7 @@ class GrowthMap(StepMap):
             try:
                 points += self._points(body, [(method, share) for method in self.methods(True, False) for share in shares])
             except Error as error:
-                self.left_out.append(f"{body.text()}: {mistake(error)}")
+                self.left_out.append(f"{body.text()}: {mistake_in(error)}")
         return points
 
     def random_point(self, inside, random: Random):

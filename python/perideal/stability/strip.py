@@ -6,10 +6,11 @@ import dataclasses
 import math
 from typing import Dict, List
 
+from ..drivers import mistake_in
 from ..program import Error
 from ..words import full_precision
 from ..work_precision.lattice import to_text
-from .scene import BONDS, Map, MappedScene, Point, Random, mistake
+from .scene import BONDS, Map, MappedScene, Point, Random
 
 TOLERABLE = 5e-3  # of the heat; beyond, a run says so in a note
 KERNELS, FRACTIONS, CALIBRATIONS, EXPONENTS = ["constant", "conical", "gaussian"], ["none", "linear", "exact"], ["discrete", "analytic"], [0, 1, 2]
@@ -73,7 +74,7 @@ class ConductionMap(Map):
             try:
                 points.append(self._point(bonds))
             except Error as error:
-                self.left_out.append(mistake(error))
+                self.left_out.append(mistake_in(error))
         return points
 
     def random_point(self, inside, random: Random):
@@ -135,7 +136,7 @@ class SurfaceMap(Map):
                     try:
                         points.append(self._point(treatment, self._bonds(ratio), width))
                     except Error as error:
-                        self.left_out.append(f"{treatment.name}, m = {ratio}: {mistake(error)}")
+                        self.left_out.append(f"{treatment.name}, m = {ratio}: {mistake_in(error)}")
         return points
 
     def random_point(self, inside, random: Random):

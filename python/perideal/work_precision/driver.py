@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Dict, List, Sequence
 
 from .. import program
+from ..drivers import mistake_in, require_scene, write_text
 from ..program import Error, settings
 from ..server import Server
 from . import tables
@@ -128,19 +129,12 @@ def _study_file(facts: dict, plan: Plan, scene: str, options: Options, output: s
             "varied": _decided_entries(plan.comparison), "rows": rows}
 
 
-def _mistake(error: Error) -> str:
-    """What is wrong with the entries of a row, without the words for overrides, which stand on no command line there."""
-    if error.status != 1:
-        raise error
-    return str(error).removeprefix("command line: ")
-
-
 def _no_choice(server: Server, scene: str, overrides: Sequence[str]) -> str:
     """What keeps `Models = auto` from choosing for a scene, or nothing."""
     try:
         return server.describe(scene, [*overrides, "Models=auto", "Peridynamics/Horizon=", *settings(OUTPUT)])["no choice"]
     except Error as error:
-        return _mistake(error)
+        return mistake_in(error)
 
 
 def _leave_out_impossible(plan: Plan, server: Server, scene: str, overrides: Sequence[str]) -> None:
@@ -153,7 +147,7 @@ def _leave_out_impossible(plan: Plan, server: Server, scene: str, overrides: Seq
         try:
             server.describe(scene, [*overrides, f"Domain/Cells={to_text(row.cells)}", *settings(row.family.settings)])
         except Error as error:
-            faults[row.family.name] = _mistake(error)
+            faults[row.family.name] = mistake_in(error)
             plan.left_out.append(f"{row.family.name}: {faults[row.family.name]}")
     plan.rows = [row for row in plan.rows if row.family is None or not faults.get(row.family.name)]
 
@@ -235,13 +229,6 @@ def _compute(study: dict, options: Options) -> str:
     return relay.mistake
 
 
-def _write(folder: Path, name: str, text: str) -> None:
-    try:
-        (folder / name).write_text(text, encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise Error(f"cannot write '{folder}/{name}': {error.strerror}. Is the disk full, or was the directory removed during the run?") from None
-
-
 def run(scene: str, options: Options = Options()) -> str:
     """Compute the study of a scene and write its results. Returns what is wrong with rows that did not end as they should, or nothing.
 
@@ -251,6 +238,7 @@ def run(scene: str, options: Options = Options()) -> str:
         if not options.quiet:
             print(text, flush=True)
 
+    require_scene(scene)
     with Server() as server:
         # The models of the rows may be others.
         overrides = [*options.overrides, "Models=finite elements", "Peridynamics/Surface correction=none", *settings(OUTPUT)]
@@ -272,10 +260,10 @@ def run(scene: str, options: Options = Options()) -> str:
     plan.left_out += [f"{planned.name}: {row.message}" for planned, row in zip(plan.rows, computed)
                       if planned.may_fail and row.status == "failed" and planned.role != "pick values"]
     results = evaluate(facts, plan, computed)
-    _write(folder, "work_precision.csv", tables.work_csv(results))
-    _write(folder, "work_precision.json", tables.work_json(written, scene, plan, results))
+    write_text(f"{output}/work_precision.csv", tables.work_csv(results))
+    write_text(f"{output}/work_precision.json", tables.work_json(written, scene, plan, results))
     if results.in_time:
-        _write(folder, "work_precision_in_time.csv", tables.in_time_csv(results))
+        write_text(f"{output}/work_precision_in_time.csv", tables.in_time_csv(results))
     say(tables.work_report(plan, results))
     say(f"Results: {output}")
     return mistake

@@ -12,6 +12,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from ..program import Error
+from ..words import split_list
 
 Cells = Tuple[int, ...]
 
@@ -33,8 +34,8 @@ def parse_ladder(text: str, option: str, dim: int, at_least: int) -> List[Cells]
     needed = (f"; needs lattices as 'Cells' has them, {dim} number{'' if dim == 1 else 's'} each, from coarse to fine, separated by '|': "
               f'"{to_text((20,) * dim)} | {to_text((40,) * dim)}".')
     ladder: List[Cells] = []
-    for lattice in _split(text, "|"):
-        counts = _split(lattice, ",")
+    for lattice in split_list(text, "|"):
+        counts = split_list(lattice, ",")
         for count in counts:
             if not (count.isascii() and count.isdigit() and len(count) < 9 and int(count) > 0):
                 raise Error(f"{where}: '{count}' is no number of cells{needed}")
@@ -47,10 +48,6 @@ def parse_ladder(text: str, option: str, dim: int, at_least: int) -> List[Cells]
     if len(ladder) < at_least:
         raise Error(f"{where}: found {len(ladder)}, needs {at_least} or more{needed}")
     return ladder
-
-
-def _split(text: str, separator: str) -> List[str]:
-    return [piece.strip() for piece in text.split(separator)] if text.strip() else []
 
 
 def nearest_whole(x: float) -> int:
