@@ -116,17 +116,16 @@ namespace PeriDeal
   template <int dim>
   void SolidOperator<dim>::add_contact(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    if (!latest.contact_is_loaded)
-      contact->keep_for_surrogate();
-    latest.contact_is_loaded = false;
     std::map<types::global_dof_index, std::map<types::global_dof_index, double>> added;
     const Vector held = held_unknowns();
     contact->add_to_surrogate(
       [&](const unsigned int row, const unsigned int column, const double value) {
         if (held.local_element(row) == 0. && held.local_element(column) == 0.)
           added[unknowns->local_to_global(row)][unknowns->local_to_global(column)] += value;
-      });
-    const MPI_Comm all = unknowns->get_mpi_communicator();
+      },
+      !latest.contact_is_loaded);
+    latest.contact_is_loaded = false;
+    const MPI_Comm all       = unknowns->get_mpi_communicator();
     if (Utilities::MPI::max(added.empty() ? 0 : 1, all) == 0)
       return;
     const IndexSet owned = unknowns->locally_owned_range();
