@@ -8,8 +8,6 @@
 #include <perideal/mesh/points_within.h>
 #include <perideal/operators/solid/short_range_contact.h>
 
-#include <nanoflann.hpp>
-
 #include <algorithm>
 #include <cmath>
 
@@ -22,36 +20,6 @@ namespace PeriDeal
     constexpr double share_of_bond = 0.9, share_of_spacing = 1.35, share_of_skin = 0.5,
                      // Ends of a bond that has broken are a tenth of it farther apart than d.
       safe_after_loss = 0.04, round_off = 1. + 1e-8;
-
-
-    /** Points for nanoflann. */
-    template <int dim>
-    struct PointCloud
-    {
-      using KDTree =
-        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
-                                            PointCloud,
-                                            dim,
-                                            unsigned int>;
-
-      std::size_t kdtree_get_point_count() const
-      {
-        return points.size();
-      }
-
-      double kdtree_get_pt(const std::size_t i, const std::size_t d) const
-      {
-        return points[i][d];
-      }
-
-      template <typename BoundingBox>
-      bool kdtree_get_bbox(BoundingBox &) const
-      {
-        return false;
-      }
-
-      std::vector<Point<dim>> points;
-    };
 
 
     template <int dim>
@@ -258,13 +226,8 @@ namespace PeriDeal
     const std::vector<Place> &list,
     const std::size_t         first) const
   {
-    PointCloud<dim> cloud;
-    for (const Place &place : list)
-      cloud.points.push_back(place.now);
-    typename PointCloud<dim>::KDTree tree(dim,
-                                          cloud,
-                                          nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    tree.buildIndex();
+    const auto now = [&](const std::size_t k) -> const Point<dim> & { return list[k].now; };
+    const PointTree<dim, decltype(now)> tree(list.size(), now);
     // Half of the skin over that share is the largest spacing.
     const double reach = share_of_spacing / share_of_skin * skin + skin;
 
@@ -276,8 +239,7 @@ namespace PeriDeal
         const Place &self  = list[first + k];
         bool         known = false;
         found.clear();
-        PointsWithin near(reach, found);
-        tree.radiusSearchCustomCallback(self.now.begin_raw(), near);
+        tree.find(self.now, reach, found);
         for (const auto &[j, square] : found)
           {
             if (j == first + k || std::sqrt(square) > distance_of(self, list[j]) + skin)
