@@ -211,7 +211,8 @@ namespace PeriDeal
     if (parted.empty())
       parted = by_cracks.flags();
     const auto note = [&](const Cell &cell) {
-      parted[cell->active_cell_index()] = by_cracks.is_cut(cell) || bonds->is_parted(cell);
+      parted[cell->active_cell_index()] = by_cracks.is_cut(cell) ||
+                                          bonds->coupling().parts_cell(cell);
     };
     if (of)
       std::for_each(of->begin(), of->end(), note);

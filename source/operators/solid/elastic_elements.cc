@@ -216,7 +216,7 @@ namespace PeriDeal
     if (!thermal_alone && breaking)
       set_all_bonds();
     else if (!thermal_alone && zone_bonds)
-      n_bonds = zone_bonds->add_to(stiffness.sparse(), cells.factors);
+      n_bonds = zone_bonds->add_to(stiffness.sparse(), &cells.factors);
     if (zone_bonds && this->is_warm())
       {
         const auto strain = [this](const unsigned int node) {
@@ -374,7 +374,7 @@ namespace PeriDeal
     if (joins.empty())
       return false;
     mend(joins, zone_bonds->reach(), [&](const std::vector<Cell> *) {
-      zone_bonds->join(change.to);
+      zone_bonds->coupling().join(change.to);
     });
     return true;
   }
@@ -390,7 +390,7 @@ namespace PeriDeal
       else
         cells.by_cracks.set(pieces, 0.);
       if (zone_bonds)
-        zone_bonds->apply_change(change);
+        zone_bonds->coupling().apply_change(change);
     });
     if (breaking && breaking->n_broken_pairs() > 0)
       cells.note_parted();
@@ -587,10 +587,9 @@ namespace PeriDeal
     multiply(reactions, u);
     contact->add_forces(reactions, u, 1.);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
-    if (zone_bonds)
-      for (const types::boundary_id side : zone_bonds->mirrors())
-        for (unsigned int i = side / 2; i < reactions.locally_owned_size(); i += dim)
-          sums[side][side / 2] -= reactions.local_element(i) - thermal_loads.local_element(i);
+    for (const types::boundary_id side : mirrors())
+      for (unsigned int i = side / 2; i < reactions.locally_owned_size(); i += dim)
+        sums[side][side / 2] -= reactions.local_element(i) - thermal_loads.local_element(i);
     reactions -= loads;
     conditions->add_reactions(reactions, sums);
     mechanical.for_each(t, [&](const auto side, const auto, const auto d, const double value) {
@@ -671,7 +670,7 @@ namespace PeriDeal
       }
     matrix.reinit(pattern(!breaking, true));
     cells.for_each_whole([&](const Cell &cell, const auto &data) {
-      if (!cells.by_cracks.is_cut(cell) && !zone_bonds->is_parted(cell))
+      if (!cells.by_cracks.is_cut(cell) && !zone_bonds->coupling().parts_cell(cell))
         hanging.add_to(matrix, data.stiffness, data.unknowns);
     });
     breaking->bonds.add_between_vertices(matrix);
@@ -696,7 +695,7 @@ namespace PeriDeal
       hanging.add_to(matrix, data.stiffness, data.unknowns);
     });
     if (with_bonds && zone_bonds)
-      zone_bonds->add_intact(matrix);
+      zone_bonds->add_to(matrix, nullptr);
     matrix.compress(VectorOperation::add);
   }
 

@@ -164,7 +164,7 @@ namespace PeriDeal
     /** Nodes join that will do so on the whole path of the cracks; K stays as it is. Collective. */
     void join_whole_way()
     {
-      zone_bonds->join(body.cracks.end_time);
+      zone_bonds->coupling().join(body.cracks.end_time);
     }
 
     /**

@@ -105,6 +105,8 @@ namespace PeriDeal
       return dim;
     }
 
+    void fill_noise(Vector &vector) const override;
+
     /** Place of a node of this process, by local number. */
     virtual const dealii::Point<dim> &position(const unsigned int node) const = 0;
 
@@ -182,8 +184,6 @@ namespace PeriDeal
 
     /** Positive on unknowns that are not free; ghosts up to date. */
     Vector held_unknowns() const;
-
-    void fill_noise(Vector &vector) const override;
 
     double thermal_strain_at(const unsigned int node) const;
 
