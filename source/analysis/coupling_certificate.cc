@@ -223,8 +223,7 @@ namespace PeriDeal
     for (const BoundaryShare &share : op.bonds().families().nodes().boundary_shares())
       for (unsigned int d = 0; d < dim; ++d)
         held.local_element(dim * share.node + d) = 1.;
-    for (unsigned int i = 0; i < noise.locally_owned_size(); ++i)
-      noise.local_element(i) = position_noise(op.position(i / dim)) * (1. + i % dim);
+    op.fill_noise(noise);
     op.hanging_nodes().set(held, 1.);
     op.hanging_nodes().set(noise, 0.);
     CouplingCertificate result = examine<dim>(op, held, noise, op.symmetric(), dim);

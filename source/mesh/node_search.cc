@@ -5,8 +5,6 @@
 #include <perideal/mesh/node_search.h>
 #include <perideal/mesh/points_within.h>
 
-#include <nanoflann.hpp>
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,38 +12,25 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  /** A k-d tree over the nodes of this process and its halo. */
+  /** Over the nodes of this process and its halo. */
   template <int dim>
   struct NodeSearch<dim>::Tree
   {
+    struct PositionOfNode
+    {
+      const Point<dim> &operator()(const std::size_t i) const
+      {
+        return nodes.position(i);
+      }
+
+      const Nodes<dim> &nodes;
+    };
+
     explicit Tree(const Nodes<dim> &nodes)
-      : nodes(nodes)
-      , index(dim, *this, nanoflann::KDTreeSingleIndexAdaptorParams(16))
-    {
-      index.buildIndex();
-    }
+      : points(nodes.n_local(), {nodes})
+    {}
 
-    std::size_t kdtree_get_point_count() const
-    {
-      return nodes.n_local();
-    }
-
-    double kdtree_get_pt(const std::size_t i, const std::size_t d) const
-    {
-      return nodes.position(i)[d];
-    }
-
-    template <typename BoundingBox>
-    bool kdtree_get_bbox(BoundingBox &) const
-    {
-      return false;
-    }
-
-    using KDTree = nanoflann::
-      KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree>, Tree, dim, unsigned int>;
-
-    const Nodes<dim> &nodes;
-    KDTree            index;
+    const PointTree<dim, PositionOfNode> points;
   };
 
 
@@ -97,12 +82,8 @@ namespace PeriDeal
                                const double                                  distance,
                                std::vector<std::pair<unsigned int, double>> &found) const
   {
-    double query[dim];
-    for (unsigned int d = 0; d < dim; ++d)
-      query[d] = p[d];
     found.clear();
-    PointsWithin result(distance, found);
-    tree->index.radiusSearchCustomCallback(query, result);
+    tree->points.find(p, distance, found);
   }
 
 

@@ -3,6 +3,10 @@
 
 #pragma once
 
+#include <deal.II/base/point.h>
+
+#include <nanoflann.hpp>
+
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -10,8 +14,8 @@
 namespace PeriDeal
 {
   /**
-   * What nanoflann finds within a distance, in no order: points and the squares of their distances,
-   * appended to a list. (The classes that nanoflann brings for this differ between its versions.)
+   * What nanoflann finds within a distance: points and the squares of their distances, appended to
+   * a list. (The classes that nanoflann brings for this differ between its versions.)
    */
   class PointsWithin
   {
@@ -57,5 +61,57 @@ namespace PeriDeal
   private:
     const double                                  square;
     std::vector<std::pair<unsigned int, double>> &found;
+  };
+
+
+  /** A k-d tree over n points, which stay where they are: position(i), a reference. */
+  template <int dim, typename Position>
+  class PointTree
+  {
+  public:
+    PointTree(const std::size_t n, const Position &position)
+      : n(n)
+      , position(position)
+      , index(dim, *this, nanoflann::KDTreeSingleIndexAdaptorParams(16))
+    {
+      index.buildIndex();
+    }
+
+    PointTree(const PointTree &) = delete;
+
+    /** Append the points within a distance, in no order, and the squares of their distances. */
+    void find(const dealii::Point<dim>                     &p,
+              const double                                  distance,
+              std::vector<std::pair<unsigned int, double>> &found) const
+    {
+      PointsWithin result(distance, found);
+      index.radiusSearchCustomCallback(p.begin_raw(), result);
+    }
+
+    // What nanoflann asks.
+    std::size_t kdtree_get_point_count() const
+    {
+      return n;
+    }
+
+    double kdtree_get_pt(const std::size_t i, const std::size_t d) const
+    {
+      return position(i)[d];
+    }
+
+    template <typename BoundingBox>
+    bool kdtree_get_bbox(BoundingBox &) const
+    {
+      return false;
+    }
+
+  private:
+    const std::size_t n;
+    const Position    position;
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointTree>,
+                                        PointTree,
+                                        dim,
+                                        unsigned int>
+      index;
   };
 } // namespace PeriDeal

@@ -59,6 +59,28 @@ namespace PeriDeal
           }
       return solved(tangents + sum * outer_product(normal, normal), lean); // that is regular
     }
+
+
+    template <int dim>
+    bool has_whole_bonds_across(const std::vector<FacingBond<dim>> &family,
+                                const Tensor<1, dim>               &normal)
+    {
+      constexpr double about_normal = 0.7, some = 0.2; // cosine; of what is lost
+      double           face = std::numeric_limits<double>::max(), lost = 0., whole = 0.;
+      const auto       is_about = [&](const FacingBond<dim> &bond) {
+        return normal * bond.xi > about_normal * bond.xi.norm();
+      };
+      for (const FacingBond<dim> &bond : family)
+        if (bond.is_lost && is_about(bond))
+          {
+            face = std::min(face, normal * bond.xi);
+            lost += bond.stiffness;
+          }
+      for (const FacingBond<dim> &bond : family)
+        if (!bond.is_lost && is_about(bond) && normal * bond.xi > (1. - 1e-6) * face)
+          whole += bond.stiffness;
+      return whole > some * lost;
+    }
   } // namespace
 
 
@@ -101,37 +123,15 @@ namespace PeriDeal
   }
 
 
-  /** Of the family that is looked at. */
-  template <int dim>
-  bool CrackContact<dim>::has_whole_bonds_across(const Tensor<1, dim> &normal) const
-  {
-    constexpr double about_normal = 0.7, some = 0.2; // cosine; of what is lost
-    double           face = std::numeric_limits<double>::max(), lost = 0., whole = 0.;
-    const auto       is_about = [&](const Bond &bond) {
-      return normal * bond.xi > about_normal * bond.xi.norm();
-    };
-    for (const Bond &bond : family)
-      if (bond.is_lost && is_about(bond))
-        {
-          face = std::min(face, normal * bond.xi);
-          lost += bond.stiffness;
-        }
-    for (const Bond &bond : family)
-      if (!bond.is_lost && is_about(bond) && normal * bond.xi > (1. - 1e-6) * face)
-        whole += bond.stiffness;
-    return whole > some * lost;
-  }
-
-
   template <int dim>
   void CrackContact<dim>::make_row(const unsigned int place)
   {
     Row         &row   = rows[place];
     const double scale = family_of(parted.node(place), family);
     row.ends.clear();
-    row.weight                   = 0.;
-    const Tensor<1, dim> normal  = normals.normal(place);
-    const bool           presses = normal != Tensor<1, dim>() && !has_whole_bonds_across(normal);
+    row.weight                  = 0.;
+    const Tensor<1, dim> normal = normals.normal(place);
+    const bool presses = normal != Tensor<1, dim>() && !has_whole_bonds_across(family, normal);
     const Tensor<1, dim> lean    = presses ? lean_of(family, normal) : Tensor<1, dim>();
     constexpr double     some    = 0.01;
     double               squares = 0., all = 0.;
@@ -246,32 +246,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  double CrackContact<dim>::gap(const unsigned int place, const double *u) const
+  double CrackContact<dim>::gap(const unsigned int place, const double *u, double *size) const
   {
     const unsigned int node = parted.node(place);
     const Face         own  = face(place);
     double             sum  = -rows[place].strained;
-    for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
-      sum += end.stiffness * share_across(d, own.normal, own.lean) *
-             change_along(d, u, node, end.neighbor);
-    });
-    return sum;
-  }
-
-
-  template <int dim>
-  double CrackContact<dim>::size_of_terms(const unsigned int place, const double *u) const
-  {
-    const unsigned int node = parted.node(place);
-    const Face         own  = face(place);
-    double             size = std::abs(rows[place].strained);
+    if (size)
+      *size += std::abs(rows[place].strained);
     for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
       const double factor = end.stiffness * share_across(d, own.normal, own.lean);
-      for (unsigned int c = 0; c < dim; ++c)
-        size += std::abs(factor * d[c]) *
-                (std::abs(u[dim * node + c]) + std::abs(u[dim * end.neighbor + c]));
+      sum += factor * change_along(d, u, node, end.neighbor);
+      for (unsigned int c = 0; size && c < dim; ++c)
+        *size += std::abs(factor * d[c]) *
+                 (std::abs(u[dim * node + c]) + std::abs(u[dim * end.neighbor + c]));
     });
-    return size;
+    return sum;
   }
 
 
@@ -282,9 +271,11 @@ namespace PeriDeal
     constexpr double noise   = 1e-9;
     const double     now     = gap(place, u);
     const bool       touches = rows[place].touches;
-    if ((now < 0.) == touches || std::abs(now) > noise * size_of_terms(place, u))
-      return now < 0.;
-    return touches;
+    if ((now < 0.) == touches)
+      return touches;
+    double size = 0.;
+    gap(place, u, &size);
+    return std::abs(now) > noise * size ? now < 0. : touches;
   }
 
 
@@ -313,80 +304,71 @@ namespace PeriDeal
 
 
   template <int dim>
-  void CrackContact<dim>::find_pressures(const Vector &u, const bool strained) const
+  template <typename Add>
+  void CrackContact<dim>::visit_forces(const Vector &x, const bool strained, const Add &add) const
   {
-    const WithGhosts ghosts(u);
+    if (!any_closed)
+      return;
+    {
+      const WithGhosts ghosts(x);
+      for (unsigned int place = 0; place < rows.size(); ++place)
+        {
+          const Row &row = rows[place];
+          pressures.local_element(place) =
+            row.touches ? row.weight * (gap(place, x.begin()) + (strained ? 0. : row.strained)) :
+                          0.;
+        }
+    }
+    pressures.update_ghost_values();
     for (unsigned int place = 0; place < rows.size(); ++place)
       {
-        const Row &row = rows[place];
-        pressures.local_element(place) =
-          row.touches ? row.weight * (gap(place, u.begin()) + (strained ? 0. : row.strained)) : 0.;
+        // From what presses at both ends of the node's lost bonds.
+        Tensor<1, dim> force;
+        const Face     own      = face(place);
+        const double   pressure = pressures.local_element(place);
+        for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
+          double             size  = 0.;
+          const unsigned int other = parted.place(end.neighbor);
+          if (pressure != 0.)
+            size += pressure * end.stiffness * share_across(d, own.normal, own.lean);
+          if (other != numbers::invalid_unsigned_int && pressures.local_element(other) != 0.)
+            {
+              const Face facing = face(other);
+              size += pressures.local_element(other) * end.stiffness *
+                      share_across(-1. * d, facing.normal, facing.lean);
+            }
+          force -= size * d;
+        });
+        for (unsigned int d = 0; d < dim; ++d)
+          add(dim * parted.node(place) + d, force[d]);
       }
-    pressures.update_ghost_values();
   }
 
 
-  /** Of K u, from what presses at both ends of the node's lost bonds. */
   template <int dim>
-  Tensor<1, dim> CrackContact<dim>::force_of(const unsigned int place) const
+  void CrackContact<dim>::find_forces(const Vector &u) const
   {
-    Tensor<1, dim> force;
-    const Face     own      = face(place);
-    const double   pressure = pressures.local_element(place);
-    for_each_end(place, [&](const End &end, const Tensor<1, dim> &d, const double) {
-      double             size  = 0.;
-      const unsigned int other = parted.place(end.neighbor);
-      if (pressure != 0.)
-        size += pressure * end.stiffness * share_across(d, own.normal, own.lean);
-      if (other != numbers::invalid_unsigned_int && pressures.local_element(other) != 0.)
-        {
-          const Face facing = face(other);
-          size += pressures.local_element(other) * end.stiffness *
-                  share_across(-1. * d, facing.normal, facing.lean);
-        }
-      force -= size * d;
+    this->forces.clear();
+    visit_forces(u, true, [&](const unsigned int unknown, const double force) {
+      this->forces.emplace_back(unknown, force);
     });
-    return force;
-  }
-
-
-  template <int dim>
-  void CrackContact<dim>::add_forces(Vector &y, const Vector &u, const double multiple) const
-  {
-    if (any_closed)
-      find_pressures(u, true);
-    for (unsigned int place = 0; place < rows.size(); ++place)
-      rows[place].force = any_closed ? force_of(place) : Tensor<1, dim>();
-    add_last_forces(y, multiple);
   }
 
 
   template <int dim>
   void CrackContact<dim>::add_tangent(Vector &y, const Vector &x) const
   {
-    if (!any_closed)
-      return;
-    find_pressures(x, false);
-    for (unsigned int place = 0; place < rows.size(); ++place)
-      {
-        const Tensor<1, dim> force = force_of(place);
-        for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * parted.node(place) + d) += force[d];
-      }
+    visit_forces(x, false, [&](const unsigned int unknown, const double force) {
+      y.local_element(unknown) += force;
+    });
   }
 
 
   template <int dim>
-  void CrackContact<dim>::keep_for_surrogate()
+  void CrackContact<dim>::add_to_surrogate(const SolidContact::EntryAction &add, const bool anew)
   {
     for (Row &row : rows)
-      row.in_surrogate = row.touches;
-  }
-
-
-  template <int dim>
-  void CrackContact<dim>::add_to_surrogate(const SolidContact::EntryAction &add) const
-  {
+      row.in_surrogate = anew ? row.touches : row.in_surrogate;
     // Springs along n to the ends, together as stiff where a face moves as a whole. (All ends of a
     // node in one block would be K itself, and far more entries.)
     for (unsigned int place = 0; place < rows.size(); ++place)
@@ -415,15 +397,6 @@ namespace PeriDeal
             }
         });
       }
-  }
-
-
-  template <int dim>
-  void CrackContact<dim>::add_last_forces(Vector &y, const double multiple) const
-  {
-    for (unsigned int place = 0; place < rows.size(); ++place)
-      for (unsigned int d = 0; d < dim; ++d)
-        y.local_element(dim * parted.node(place) + d) += multiple * rows[place].force[d];
   }
 
 

@@ -2,27 +2,90 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/mapping_q1.h>
 
+#include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/parts/element_layout.h>
 #include <perideal/operators/parts/event_work.h>
+#include <perideal/operators/parts/lumped_mass.h>
 #include <perideal/operators/solid/elastic_elements.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 
-#include "elastic_cell_data.h"
 #include "inversion.h"
 #include "loose_nodes.h"
+#include "with_ghosts.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** Where the nodes of elements are, owned ones and ghosts. */
+    template <int dim>
+    void find_support_points(const DoFHandler<dim>             &dofs,
+                             const Utilities::MPI::Partitioner &nodes,
+                             std::vector<Point<dim>>           &points)
+    {
+      const MappingQ1<dim>                 mapping;
+      std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (!cell->is_artificial())
+          {
+            cell->get_dof_indices(indices);
+            for (unsigned int i = 0; i < indices.size(); ++i)
+              points[nodes.global_to_local(indices[i])] =
+                mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i));
+          }
+    }
+
+
+    /** Owned nodes on sides and their parts, each once, but for those that hang. */
+    template <int dim>
+    std::vector<NodeOnSide<dim>> nodes_on_sides(const DoFHandler<dim>             &dofs,
+                                                const Utilities::MPI::Partitioner &nodes,
+                                                const HangingNodes<dim>           &hanging,
+                                                const std::vector<Point<dim>>     &positions,
+                                                const std::vector<Part>           &parts)
+    {
+      const auto                                           &fe = dofs.get_fe();
+      std::vector<types::global_dof_index>                  indices(fe.n_dofs_per_cell());
+      std::set<std::pair<types::boundary_id, unsigned int>> seen;
+      std::vector<NodeOnSide<dim>>                          list;
+      for (const auto &cell : dofs.active_cell_iterators())
+        {
+          if (cell->is_artificial() || !cell->at_boundary())
+            continue;
+          cell->get_dof_indices(indices);
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary())
+              for (unsigned int i = 0; i < indices.size(); ++i)
+                if (fe.has_support_on_face(i, f) && nodes.in_local_range(indices[i]) &&
+                    !hanging.is_hanging(dim * indices[i]))
+                  {
+                    const types::boundary_id side = cell->face(f)->boundary_id();
+                    const unsigned int       node = nodes.global_to_local(indices[i]);
+                    if (seen.insert({side, node}).second)
+                      list.push_back({node, side, positions[node]});
+                    for (const Part &part : parts)
+                      if (part.side == side && part.holds(positions[node]) &&
+                          seen.insert({part.id, node}).second)
+                        list.push_back({node, part.id, positions[node]});
+                  }
+        }
+      return list;
+    }
+  } // namespace
+
 
   template <int dim>
   void ElasticElements<dim>::require(const BodyParameters<dim> &body, const bool coupled)
@@ -43,32 +106,29 @@ namespace PeriDeal
                                         const BodyParameters<dim>     &body,
                                         std::unique_ptr<Coupling<dim>> coupling)
     : SolidOperator<dim>(body, element_layout(dof_handler, coupling.get()))
-    , dofs(dof_handler)
     , zone_bonds(coupling ? std::make_unique<SolidBondsBesideElements<dim>>(std::move(coupling)) :
                             nullptr)
-    , cut_by_cracks(dofs,
-                    {body.cracks.on_faces(),
-                     true,
-                     body.cracks.contact_conductance,
-                     [&body] { return body.horizon(); },
-                     body.cuts_in_part_at_tips(),
-                     zone_bonds && body.coupling.zone != ZoneKind::formula &&
-                       body.coupling.zone != ZoneKind::adaptive})
-    , hanging(dofs, *nodes, dim)
-    , mechanical(dofs, body, nodes, [this](const auto unknown) {
+    , cells(dof_handler, body, zone_bonds.get(), this->temperature_change())
+    , hanging(dof_handler, *nodes, dim)
+    , mechanical(dof_handler, body, nodes, [this](const auto unknown) {
       return hanging.is_hanging(unknown);
     })
   {
     if (zone_bonds && (body.material.fracture_energy || body.material.critical_stretch))
       {
-        breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->coupling(), dofs, body);
+        breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->coupling(), dof_handler, body);
         this->initialize_vector(force_change);
       }
-    find_positions();
+    positions.resize(nodes->locally_owned_size() + nodes->n_ghost_indices());
+    if (zone_bonds)
+      for (unsigned int i = 0; i < positions.size(); ++i)
+        positions[i] = zone_bonds->nodes().position(i);
+    else
+      find_support_points(dof_handler, *nodes, positions);
     // Where tips cut in part, ends on sides are none.
-    cut_by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
+    cells.by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
     find_conditions();
-    assemble();
+    assemble(false);
     this->keep_constant_loads();
     if (zone_bonds && body.coupling.exchanges() && !body.cracks.on_faces() &&
         body.elasticity.contact && this->may_part())
@@ -77,76 +137,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  ElasticElements<dim>::~ElasticElements() = default;
-
-
-  template <int dim>
-  void ElasticElements<dim>::find_positions()
-  {
-    positions.resize(nodes->locally_owned_size() + nodes->n_ghost_indices());
-    if (zone_bonds)
-      {
-        for (unsigned int i = 0; i < positions.size(); ++i)
-          positions[i] = zone_bonds->nodes().position(i);
-        return;
-      }
-    const MappingQ1<dim>                 mapping;
-    std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        {
-          cell->get_dof_indices(indices);
-          for (unsigned int i = 0; i < indices.size(); ++i)
-            positions[nodes->global_to_local(indices[i])] =
-              mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i));
-        }
-  }
-
-
-  template <int dim>
-  Inversion ElasticElements<dim>::inverted(const Vector &u) const
-  {
-    const auto corners = cell_corners_of<dim>(dofs, *nodes);
-    u.update_ghost_values();
-    const Inversion result = find_inverted<dim>(
-      corners,
-      u,
-      [&](const unsigned int node) { return positions[node]; },
-      [](const CellCorner<dim> &) { return true; },
-      dofs.get_communicator());
-    u.set_ghost_state(false);
-    return result;
-  }
-
-
-  template <int dim>
   void ElasticElements<dim>::find_conditions()
   {
-    const auto                                                 &fe = dofs.get_fe();
-    std::vector<types::global_dof_index>                        indices(fe.n_dofs_per_cell());
-    std::map<std::pair<types::boundary_id, unsigned int>, bool> seen;
-    std::vector<NodeOnSide<dim>>                                on_sides;
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        if (cell->is_artificial() || !cell->at_boundary())
-          continue;
-        cell->get_dof_indices(indices);
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            for (unsigned int i = 0; i < indices.size(); ++i)
-              if (fe.has_support_on_face(i, f) && nodes->in_local_range(indices[i]) &&
-                  !hanging.is_hanging(dim * indices[i]))
-                {
-                  const types::boundary_id side = cell->face(f)->boundary_id();
-                  const unsigned int       node = nodes->global_to_local(indices[i]);
-                  if (seen.try_emplace({side, node}).second)
-                    on_sides.push_back({node, side, positions[node]});
-                  for (const Part &part : body.boundary_conditions.parts)
-                    if (part.side == side && part.holds(positions[node]) &&
-                        seen.try_emplace({part.id, node}).second)
-                      on_sides.push_back({node, part.id, positions[node]});
-                }
-      }
+    const DoFHandler<dim>       &dofs = cells.dof_handler();
+    std::vector<NodeOnSide<dim>> on_sides =
+      nodes_on_sides(dofs, *nodes, hanging, positions, body.boundary_conditions.parts);
     for (const PartUnknown<dim> &unknown : mechanical.part_unknowns())
       on_sides.push_back({unknown.node, unknown.id, unknown.position});
     const std::vector<Point<dim>> own(positions.begin(),
@@ -162,10 +157,123 @@ namespace PeriDeal
         Vector free(unknowns);
         free = 1.;
         conditions->mask(free);
-        hanging.let_follow(find_followers(dofs, cut_by_cracks, hanging, free, Vector(nodes)),
+        hanging.let_follow(find_followers(dofs, cells.by_cracks, hanging, free, Vector(nodes)),
                            dofs.get_communicator());
       }
     conditions->let_follow(hanging.owned());
+  }
+
+
+  template <int dim>
+  TrilinosWrappers::SparsityPattern ElasticElements<dim>::pattern(const bool with_bonds,
+                                                                  const bool ever) const
+  {
+    const IndexSet owned    = unknowns->locally_owned_range();
+    IndexSet       relevant = unknowns->ghost_indices();
+    relevant.add_indices(owned);
+    TrilinosWrappers::SparsityPattern pattern(owned,
+                                              owned,
+                                              relevant,
+                                              nodes->get_mpi_communicator());
+    for (const auto &cell : cells.dof_handler().active_cell_iterators())
+      if (cell->is_locally_owned())
+        hanging.add_to(pattern, cells.unknowns_of(cell));
+    if (with_bonds && zone_bonds)
+      zone_bonds->add_pattern(pattern, ever);
+    pattern.compress();
+    return pattern;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble(const bool thermal_alone)
+  {
+    const MPI_Comm all = nodes->get_mpi_communicator();
+    if (!thermal_alone)
+      {
+        stiffness.reinit(pattern(!breaking, true));
+        if (cells.scales_beside_cracks())
+          cells.find_factors(Vector(nodes));
+        mass = 0.;
+        volumes.reinit(nodes);
+      }
+    thermal_loads = 0.;
+    double energy = 0.;
+    cells.for_each([&](const auto &, auto &cell) {
+      energy += cell.thermal_energy;
+      for (unsigned int i = 0; i < cell.unknowns.size(); ++i)
+        thermal_loads(cell.unknowns[i]) += cell.thermal(i);
+      if (thermal_alone)
+        return;
+      stiffness.add(hanging, cell.stiffness, cell.unknowns);
+      make_positive(cell.diagonal, cell.mass);
+      for (unsigned int i = 0; i < cell.unknowns.size(); ++i)
+        mass(cell.unknowns[i]) += cell.mass(i / dim);
+      for (unsigned int i = 0; i < cell.indices.size(); ++i)
+        volumes(cell.indices[i]) += cell.volume(i);
+    });
+    thermal_energy = Utilities::MPI::sum(energy, all);
+    if (!thermal_alone && breaking)
+      set_all_bonds();
+    else if (!thermal_alone && zone_bonds)
+      n_bonds = zone_bonds->add_to(stiffness.sparse(), &cells.factors);
+    if (zone_bonds && this->is_warm())
+      {
+        const auto strain = [this](const unsigned int node) {
+          return this->thermal_strain_at(node);
+        };
+        if (breaking)
+          {
+            std::vector<double> strains(positions.size());
+            for (unsigned int i = 0; i < strains.size(); ++i)
+              strains[i] = strain(i);
+            breaking->set_thermal(std::move(strains));
+            energy = breaking->bonds.add_thermal(thermal_loads,
+                                                 breaking->bonds.nodes(),
+                                                 breaking->thermal_strains(),
+                                                 1.);
+          }
+        else
+          energy = zone_bonds->add_thermal(thermal_loads, cells.factors, strain);
+        thermal_energy += Utilities::MPI::sum(energy, all);
+      }
+    thermal_loads.compress(VectorOperation::add);
+    hanging.condense(thermal_loads);
+    if (thermal_alone)
+      return;
+    stiffness.compress();
+    mass.compress(VectorOperation::add);
+    hanging.condense(mass);
+    // Their masters have it; as good as nothing, but a mass.
+    hanging.set(mass, std::numeric_limits<double>::epsilon() * mass.l1_norm() / mass.size());
+    volumes.compress(VectorOperation::add);
+    find_diagonal();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::set_all_bonds()
+  {
+    std::vector<unsigned int> owned(nodes->locally_owned_size());
+    std::iota(owned.begin(), owned.end(), 0);
+    breaking->bonds.set_rows(owned, cells.factors);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_diagonal()
+  {
+    stiffness.for_each_entry([&](const unsigned int i, const auto column, const double value) {
+      if (column == unknowns->local_to_global(i))
+        stiffness_diagonal.local_element(i) = value;
+    });
+    if (breaking)
+      breaking->bonds.add_diagonal(stiffness_diagonal);
+    conditions->mask(stiffness_diagonal, 1.);
+    if (breaking && breaking->n_broken_pairs() > 0)
+      hold_loose(stiffness_diagonal);
+    else
+      throw_if_isolated();
   }
 
 
@@ -192,51 +300,102 @@ namespace PeriDeal
               "The node at " + this->place_of(i) + fault +
                 " Check 'Horizon' in section 'Peridynamics' and the cracks in section 'Cracks'.";
       }
-    throw_on_all_if_any(dofs.get_communicator(), message);
+    throw_on_all_if_any(nodes->get_mpi_communicator(), message);
   }
 
 
   template <int dim>
-  void ElasticElements<dim>::set_all_bonds()
+  double ElasticElements<dim>::add_parts(const std::vector<Cell>         &of_cells,
+                                         const std::vector<unsigned int> &rows,
+                                         const double                     multiple,
+                                         const Vector                    *u)
   {
-    std::vector<unsigned int> owned(nodes->locally_owned_size());
-    std::iota(owned.begin(), owned.end(), 0);
-    breaking->bonds.set_rows(owned, crack_factors);
-  }
-
-
-  template <int dim>
-  double ElasticElements<dim>::add_zone_parts(const std::vector<Cell>         &of_cells,
-                                              const std::vector<unsigned int> &rows,
-                                              const double                     multiple,
-                                              const Vector                    &u)
-  {
-    CellData  &data   = *cell_data;
-    const bool warms  = any_thermal();
+    const bool warms  = u && this->is_warm();
     double     energy = 0., held = 0.;
-    for (const Cell &cell : of_cells)
-      if (cell->is_locally_owned())
-        {
-          data.values.reinit(cell);
-          data.set_indices(cell);
-          data.assemble(*this);
-          change_cell(cell, data);
-          energy += data.energy(u);
-          for (unsigned int i = 0; i < data.unknowns.size(); ++i)
-            force_change(data.unknowns[i]) += multiple * data.force(i, u);
-          held += data.thermal_energy;
-          data.stiffness *= multiple;
-          stiffness.add(hanging, data.stiffness, data.unknowns);
-          for (unsigned int i = 0; i < data.unknowns.size() && warms; ++i)
-            thermal_loads(data.unknowns[i]) += multiple * data.thermal(i);
-        }
+    cells.for_each(of_cells, [&](const Cell &, auto &cell) {
+      const auto &list = cell.unknowns;
+      energy += u ? cell.energy(*u) : 0.;
+      held += cell.thermal_energy;
+      for (unsigned int i = 0; u && i < list.size(); ++i)
+        force_change(list[i]) += multiple * cell.force(i, *u);
+      for (unsigned int i = 0; warms && i < list.size(); ++i)
+        thermal_loads(list[i]) += multiple * cell.thermal(i);
+      cell.stiffness *= multiple;
+      stiffness.add(hanging, cell.stiffness, list);
+    });
+    if (zone_bonds && !breaking)
+      n_bonds += zone_bonds->add_to(stiffness.sparse(), cells.factors, rows, multiple);
+    if (!u)
+      return 0.;
     const std::vector<double> &strains = breaking->thermal_strains();
-    energy += breaking->bonds.energy(u, rows, strains);
-    breaking->bonds.add_forces_of(rows, multiple, force_change, u);
+    energy += breaking->bonds.energy(*u, rows, strains);
+    breaking->bonds.add_forces_of(rows, multiple, force_change, *u);
     if (warms)
       held += breaking->bonds.add_thermal(thermal_loads, rows, strains, multiple) / multiple;
-    thermal_energy += Utilities::MPI::sum(multiple * held, dofs.get_communicator());
+    thermal_energy += Utilities::MPI::sum(multiple * held, nodes->get_mpi_communicator());
     return multiple * energy;
+  }
+
+
+  template <int dim>
+  template <typename MakeChange>
+  void ElasticElements<dim>::mend(const Boxes      &boxes,
+                                  const double      of_cells,
+                                  const MakeChange &make_change)
+  {
+    if (cells.scales_beside_cracks()) // factors of cells and bonds change farther away
+      {
+        make_change(nullptr);
+        assemble(false);
+        return;
+      }
+    const std::vector<Cell>         near = cells.near(boxes, of_cells);
+    const std::vector<unsigned int> rows = zone_bonds ? zone_bonds->nodes_near(boxes) :
+                                                        std::vector<unsigned int>();
+    add_parts(near, rows, -1.);
+    make_change(&near);
+    add_parts(near, rows, 1.);
+    if (breaking)
+      breaking->bonds.set_rows(rows, cells.factors);
+    stiffness.compress();
+    if (this->is_warm())
+      assemble(true);
+  }
+
+
+  template <int dim>
+  bool ElasticElements<dim>::join_zone(const ChangeSet<dim> &change)
+  {
+    if (!zone_bonds || change.cuts.empty())
+      return false;
+    const Boxes joins = boxes_beside(change.cuts,
+                                     zone_bonds->coupling().joining_by(change.to),
+                                     nodes->get_mpi_communicator());
+    if (joins.empty())
+      return false;
+    mend(joins, zone_bonds->reach(), [&](const std::vector<Cell> *) {
+      zone_bonds->coupling().join(change.to);
+    });
+    return true;
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::apply_change(const ChangeSet<dim> &change, const bool)
+  {
+    const auto pieces = this->history.pieces(change.to);
+    mend(change.cuts, 0., [&](const std::vector<Cell> *near) {
+      if (near)
+        cells.by_cracks.set(*near, pieces, 0.);
+      else
+        cells.by_cracks.set(pieces, 0.);
+      if (zone_bonds)
+        zone_bonds->coupling().apply_change(change);
+    });
+    if (breaking && breaking->n_broken_pairs() > 0)
+      cells.note_parted();
+    find_diagonal();
+    this->keep_constant_loads();
   }
 
 
@@ -247,43 +406,30 @@ namespace PeriDeal
                                          const Vector                    &u,
                                          const std::function<void()>     &make_change)
   {
-    if (!search)
-      search = std::make_unique<CellSearch<dim>>(dofs);
-    std::vector<Cell> cells;
-    search->find(boxes, of_cells, cells);
-    changes_forces = true;
-    double gained  = add_zone_parts(cells, rows, -1., u);
+    const std::vector<Cell> near = cells.near(boxes, of_cells);
+    changes_forces               = true;
+    double gained                = add_parts(near, rows, -1., &u);
     make_change();
-    gained += add_zone_parts(cells, rows, 1., u);
+    gained += add_parts(near, rows, 1., &u);
     stiffness.compress();
-    if (any_thermal())
+    if (this->is_warm())
       {
         thermal_loads.compress(VectorOperation::add);
         hanging.condense(thermal_loads);
         this->keep_constant_loads();
       }
-    note_parted(cells);
+    if (breaking->n_broken_pairs() > 0)
+      cells.note_parted(&near);
     if (!this->forgoes_diagonal)
-      mend_diagonal(cells, rows);
-    return contact->change(rows, u) - Utilities::MPI::sum(gained, dofs.get_communicator());
-  }
-
-
-  template <int dim>
-  std::vector<typename ElasticElements<dim>::Cell> ElasticElements<dim>::known_cells() const
-  {
-    std::vector<Cell> list;
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (!cell->is_artificial())
-        list.push_back(cell);
-    return list;
+      mend_diagonal(near, rows);
+    return contact->change(rows, u) - Utilities::MPI::sum(gained, nodes->get_mpi_communicator());
   }
 
 
   template <int dim>
   void ElasticElements<dim>::mend_unbalanced(Vector &r, const Vector &u, const double t) const
   {
-    if (!breaking || any_thermal())
+    if (!breaking || this->is_warm())
       return this->unbalanced(r, u, t);
     if (!changes_forces)
       return;
@@ -295,18 +441,6 @@ namespace PeriDeal
     contact->add_forces(r, u, -1.);
     force_change   = 0.;
     changes_forces = false;
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::note_parted(const std::vector<Cell> &of_cells)
-  {
-    if (breaking->n_broken_pairs() == 0)
-      return;
-    if (parted.empty())
-      parted = cut_by_cracks.flags();
-    for (const Cell &cell : of_cells)
-      parted[cell->active_cell_index()] = cut_by_cracks.is_cut(cell) || zone_bonds->is_parted(cell);
   }
 
 
@@ -338,19 +472,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool ElasticElements<dim>::join_zone_around(const std::vector<Point<dim>> &places,
-                                              const Vector                  &u)
+  bool ElasticElements<dim>::join_stretched(const Vector &u)
   {
+    const std::vector<Point<dim>> places = breaking->find_places_to_join(u);
+    if (places.empty())
+      return false;
     const auto joining = breaking->joining(places);
     Boxes      boxes;
     for (const auto &[node, weight] : joining)
       boxes.emplace_back(std::vector<Point<dim>>{positions[node], positions[node]});
-    if (Utilities::MPI::sum(static_cast<double>(joining.size()), dofs.get_communicator()) == 0.)
+    if (Utilities::MPI::sum(1. * joining.size(), nodes->get_mpi_communicator()) == 0.)
       return false;
     const std::vector<unsigned int> rows = zone_bonds->nodes_near(boxes);
     this->released_by_joining += mend_zone(boxes, zone_bonds->reach(), rows, u, [&] {
       breaking->join(joining);
-      breaking->bonds.set_rows(rows, crack_factors);
+      breaking->bonds.set_rows(rows, cells.factors);
     });
     return true;
   }
@@ -360,18 +496,12 @@ namespace PeriDeal
   bool ElasticElements<dim>::widen_zone(const Vector &u)
   {
     if (changes_forces)
-      {
-        force_change = 0.;
-        force_change.zero_out_ghost_values();
-        changes_forces = false;
-      }
+      force_change = 0.;
+    changes_forces = false;
     if (!zone_follows_stretches())
       return false;
-    u.update_ghost_values();
-    const std::vector<Point<dim>> places  = breaking->find_places_to_join(u);
-    const bool                    widened = !places.empty() && join_zone_around(places, u);
-    u.set_ghost_state(false);
-    return widened;
+    const WithGhosts ghosts(u);
+    return join_stretched(u);
   }
 
 
@@ -380,14 +510,12 @@ namespace PeriDeal
                                          const Vector                &u,
                                          const double                 t)
   {
-    u.update_ghost_values();
+    const WithGhosts ghosts(u);
     breaking->history.released +=
       mend_zone(breaking->parted_by(pairs), 0., breaking->rows_of(pairs), u, [&] {
         breaking->take(pairs, t);
       });
-    if (const auto places = breaking->find_places_to_join(u); !places.empty())
-      join_zone_around(places, u);
-    u.set_ghost_state(false);
+    join_stretched(u);
   }
 
 
@@ -398,22 +526,11 @@ namespace PeriDeal
   {
     if (!breaking)
       return 0;
-    u.update_ghost_values();
+    const WithGhosts            ghosts(u);
     const std::vector<NodePair> pairs = breaking->find_overstretched(u, share);
-    u.set_ghost_state(false);
     if (!pairs.empty())
       break_pairs(pairs, u, t);
     return pairs.size();
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::surrogate_made() const
-  {
-    if (!breaking)
-      return;
-    n_broken_of_surrogate = breaking->n_broken_pairs();
-    breaking->keep_zone();
   }
 
 
@@ -430,26 +547,65 @@ namespace PeriDeal
     });
     if (!archive.loads())
       return;
-    assemble();
+    assemble(false);
     this->keep_constant_loads();
-    note_parted(known_cells());
+    if (breaking->n_broken_pairs() > 0)
+      cells.note_parted();
   }
 
 
   template <int dim>
-  void ElasticElements<dim>::share_rows_for_steps() const
+  void ElasticElements<dim>::set_temperature_change(const Vector &nodal)
   {
-    if (!this->forgoes_diagonal || stiffness.was_asked_to_share() || hanging.any() ||
-        !body.domain.has_lattice() || (zone_bonds && !breaking && this->has_growing_cracks()))
-      return;
-    stiffness.share_rows(nodes, places_on_lattice(positions, body.domain));
+    this->keep_temperature_change(nodal);
+    this->set_contact_strains();
+    assemble(true);
+    this->keep_constant_loads();
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_loads(Vector &loads, const double t) const
+  {
+    loads = thermal_loads;
+    loads.zero_out_ghost_values();
+    mechanical.for_each(t, [&](const auto, const auto unknown, const auto, const double value) {
+      loads(unknown) += value;
+    });
+    loads.compress(VectorOperation::add);
+    hanging.condense(loads);
+  }
+
+
+  template <int dim>
+  ForceBalance ElasticElements<dim>::forces(const Vector &u, const double t) const
+  {
+    Vector loads, reactions;
+    this->initialize_vector(loads);
+    this->initialize_vector(reactions);
+    find_loads(loads, t);
+    multiply(reactions, u);
+    contact->add_forces(reactions, u, 1.);
+    std::map<types::boundary_id, Tensor<1, dim>> sums;
+    for (const types::boundary_id side : mirrors())
+      for (unsigned int i = side / 2; i < reactions.locally_owned_size(); i += dim)
+        sums[side][side / 2] -= reactions.local_element(i) - thermal_loads.local_element(i);
+    reactions -= loads;
+    conditions->add_reactions(reactions, sums);
+    mechanical.for_each(t, [&](const auto side, const auto, const auto d, const double value) {
+      sums[side][d] += value;
+    });
+    return gather_forces(sums, body, nodes->get_mpi_communicator());
   }
 
 
   template <int dim>
   void ElasticElements<dim>::multiply(Vector &y, const Vector &x) const
   {
-    share_rows_for_steps();
+    // Where explicit steps follow, but for growing cracks, which change the matrix itself.
+    if (this->forgoes_diagonal && !stiffness.was_asked_to_share() && !hanging.any() &&
+        body.domain.has_lattice() && (!zone_bonds || breaking || !this->has_growing_cracks()))
+      stiffness.share_rows(nodes, places_on_lattice(positions, body.domain));
     const bool is_known = x.has_ghost_elements();
     if (breaking || stiffness.shares_rows())
       x.update_ghost_values();
@@ -458,6 +614,29 @@ namespace PeriDeal
       breaking->bonds.add_forces(y, x);
     x.set_ghost_state(is_known);
     hanging.set(y, 0.); // the nodes they follow from have all of it
+  }
+
+
+  template <int dim>
+  double ElasticElements<dim>::energy(const Vector &u) const
+  {
+    Vector image;
+    this->initialize_vector(image);
+    multiply(image, u);
+    return 0.5 * (u * image) - u * thermal_loads + thermal_energy + contact->energy(u);
+  }
+
+
+  template <int dim>
+  Inversion ElasticElements<dim>::inverted(const Vector &u) const
+  {
+    const WithGhosts ghosts(u);
+    return find_inverted<dim>(
+      cell_corners_of<dim>(cells.dof_handler(), *nodes),
+      u,
+      [&](const unsigned int node) { return positions[node]; },
+      [](const CellCorner<dim> &) { return true; },
+      nodes->get_mpi_communicator());
   }
 
 
@@ -475,18 +654,67 @@ namespace PeriDeal
     double bound = 0.;
     for (unsigned int i = 0; i < row_sums.size(); ++i)
       bound = std::max(bound, row_sums[i] / mass.local_element(i));
-    bound = Utilities::MPI::max(bound, dofs.get_communicator());
+    bound = Utilities::MPI::max(bound, nodes->get_mpi_communicator());
     return {bound, sharp_bound(*this, bound, [&](Vector &vector) { this->fill_noise(vector); })};
   }
 
 
   template <int dim>
-  double ElasticElements<dim>::energy(const Vector &u) const
+  void ElasticElements<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    Vector image;
-    this->initialize_vector(image);
-    multiply(image, u);
-    return 0.5 * (u * image) - u * thermal_loads + thermal_energy + contact->energy(u);
+    if (!breaking)
+      {
+        stiffness.copy_to(matrix, pattern(!breaking, true));
+        hold_unknowns(matrix, this->held_unknowns());
+        return;
+      }
+    matrix.reinit(pattern(!breaking, true));
+    cells.for_each_whole([&](const Cell &cell, const auto &data) {
+      if (!cells.by_cracks.is_cut(cell) && !zone_bonds->coupling().parts_cell(cell))
+        hanging.add_to(matrix, data.stiffness, data.unknowns);
+    });
+    breaking->bonds.add_between_vertices(matrix);
+    matrix.compress(VectorOperation::add);
+    Vector loose = this->held_unknowns();
+    mark_loose(matrix, stiffness_diagonal, loose);
+    hold_unknowns(matrix, loose);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::assemble_intact(TrilinosWrappers::SparseMatrix &matrix,
+                                             const bool                      with_bonds) const
+  {
+    if (with_bonds && !breaking && !stiffness.shares_rows())
+      matrix.reinit(stiffness.sparse());
+    else
+      matrix.reinit(pattern(with_bonds, false));
+    cells.for_each_whole([&](const Cell &cell, auto &data) {
+      if (with_bonds && zone_bonds)
+        zone_bonds->leave_remainder(cell, data.stiffness);
+      hanging.add_to(matrix, data.stiffness, data.unknowns);
+    });
+    if (with_bonds && zone_bonds)
+      zone_bonds->add_to(matrix, nullptr);
+    matrix.compress(VectorOperation::add);
+  }
+
+
+  template <int dim>
+  OperatorSize ElasticElements<dim>::size() const
+  {
+    OperatorSize size;
+    size.unknowns = unknowns->size();
+    size.nonzeros = stiffness.n_entries();
+    size.bonds    = std::llround(Utilities::MPI::sum(breaking ? breaking->bonds.n_whole() : n_bonds,
+                                                  nodes->get_mpi_communicator()));
+    size.memory   = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
+    if (zone_bonds)
+      size.memory += zone_bonds->coupling().memory_consumption();
+    if (breaking)
+      size.memory += breaking->memory_consumption();
+    size.form = "matrix";
+    return size;
   }
 
 

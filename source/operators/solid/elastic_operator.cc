@@ -44,8 +44,7 @@ namespace PeriDeal
   void ElasticOperator::keep_temperature_change(const Vector &nodal)
   {
     initialize_nodal_vector(nodal_change);
-    for (unsigned int i = 0; i < nodal_change.locally_owned_size(); ++i)
-      nodal_change.local_element(i) = nodal.local_element(i);
+    nodal_change.copy_locally_owned_data_from(nodal);
     nodal_change.update_ghost_values();
   }
 
@@ -86,8 +85,7 @@ namespace PeriDeal
       return;
     Vector change;
     initialize_nodal_vector(change);
-    for (unsigned int i = 0; i < nodal_change.locally_owned_size(); ++i)
-      change.local_element(i) = nodal_change.local_element(i);
+    change.copy_locally_owned_data_from(nodal_change);
     archive.exchange("temperature change", change, keys);
     if (archive.loads())
       set_temperature_change(change);

@@ -8,8 +8,6 @@
 #include <perideal/mesh/points_within.h>
 #include <perideal/operators/solid/short_range_contact.h>
 
-#include <nanoflann.hpp>
-
 #include <algorithm>
 #include <cmath>
 
@@ -22,36 +20,6 @@ namespace PeriDeal
     constexpr double share_of_bond = 0.9, share_of_spacing = 1.35, share_of_skin = 0.5,
                      // Ends of a bond that has broken are a tenth of it farther apart than d.
       safe_after_loss = 0.04, round_off = 1. + 1e-8;
-
-
-    /** Points for nanoflann. */
-    template <int dim>
-    struct PointCloud
-    {
-      using KDTree =
-        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
-                                            PointCloud,
-                                            dim,
-                                            unsigned int>;
-
-      std::size_t kdtree_get_point_count() const
-      {
-        return points.size();
-      }
-
-      double kdtree_get_pt(const std::size_t i, const std::size_t d) const
-      {
-        return points[i][d];
-      }
-
-      template <typename BoundingBox>
-      bool kdtree_get_bbox(BoundingBox &) const
-      {
-        return false;
-      }
-
-      std::vector<Point<dim>> points;
-    };
 
 
     template <int dim>
@@ -73,7 +41,6 @@ namespace PeriDeal
     : nodes(nodes)
     , horizon(horizon)
     , bonds_of(bonds_of)
-    , stiffnesses(stiffnesses)
     , finest(horizon)
   {
     std::vector<unsigned int> others;
@@ -83,7 +50,7 @@ namespace PeriDeal
         bonds_of(i, others);
         for (const unsigned int j : others)
           shortest = std::min(shortest, nodes.position(i).distance(nodes.position(j)));
-        spacings.push_back(shortest);
+        own.push_back({stiffnesses[i], shortest});
         finest = std::min(finest, shortest);
       }
     finest = Utilities::MPI::min(finest, nodes.communicator());
@@ -94,18 +61,16 @@ namespace PeriDeal
   void ShortRangeContact<dim>::find_asked()
   {
     std::vector<unsigned int> others;
-    is_asked.assign(nodes.n_owned(), false);
-    is_whole.resize(nodes.n_owned());
     asked.clear();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        is_whole[i] = bonds_of(i, others);
-        is_asked[i] = !is_whole[i];
+        own[i].is_whole = bonds_of(i, others);
+        own[i].is_asked = !own[i].is_whole;
       }
     for (const BoundaryShare &share : nodes.boundary_shares())
-      is_asked[share.node] = true;
+      own[share.node].is_asked = true;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      if (is_asked[i])
+      if (own[i].is_asked)
         asked.push_back(i);
   }
 
@@ -173,10 +138,10 @@ namespace PeriDeal
       return 0.;
     for (const unsigned int i : of_nodes)
       {
-        is_whole[i] = false;
-        if (is_asked[i])
+        own[i].is_whole = false;
+        if (own[i].is_asked)
           continue;
-        is_asked[i] = true;
+        own[i].is_asked = true;
         asked.push_back(i);
         for (unsigned int d = 0; d < dim; ++d)
           at_search.push_back(u.local_element(dim * i + d));
@@ -194,18 +159,21 @@ namespace PeriDeal
   template <int dim>
   auto ShortRangeContact<dim>::gathered(const Vector &u) const -> std::vector<Place>
   {
-    std::vector<double> own;
+    std::vector<double> numbers;
     for (const unsigned int i : asked)
       {
-        own.insert(
-          own.end(),
-          {1. * (nodes.first_owned() + i), spacings[i], stiffnesses[i], is_whole[i] ? 1. : 0.});
+        numbers.insert(numbers.end(),
+                       {1. * (nodes.first_owned() + i),
+                        own[i].spacing,
+                        own[i].stiffness,
+                        own[i].is_whole ? 1. : 0.});
         for (unsigned int d = 0; d < dim; ++d)
-          own.insert(own.end(),
-                     {nodes.position(i)[d], nodes.position(i)[d] + u.local_element(dim * i + d)});
+          numbers.insert(
+            numbers.end(),
+            {nodes.position(i)[d], nodes.position(i)[d] + u.local_element(dim * i + d)});
       }
     std::vector<Place> list;
-    for (const std::vector<double> &some : gathered_lists(nodes.communicator(), own))
+    for (const std::vector<double> &some : gathered_lists(nodes.communicator(), numbers))
       for (auto from = some.begin(); from != some.end();)
         {
           Place place;
@@ -258,13 +226,8 @@ namespace PeriDeal
     const std::vector<Place> &list,
     const std::size_t         first) const
   {
-    PointCloud<dim> cloud;
-    for (const Place &place : list)
-      cloud.points.push_back(place.now);
-    typename PointCloud<dim>::KDTree tree(dim,
-                                          cloud,
-                                          nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    tree.buildIndex();
+    const auto now = [&](const std::size_t k) -> const Point<dim> & { return list[k].now; };
+    const PointTree<dim, decltype(now)> tree(list.size(), now);
     // Half of the skin over that share is the largest spacing.
     const double reach = share_of_spacing / share_of_skin * skin + skin;
 
@@ -273,19 +236,18 @@ namespace PeriDeal
     std::vector<std::vector<unsigned int>>       result(asked.size());
     for (std::size_t k = 0; k < asked.size(); ++k)
       {
-        const Place &own   = list[first + k];
+        const Place &self  = list[first + k];
         bool         known = false;
         found.clear();
-        PointsWithin near(reach, found);
-        tree.radiusSearchCustomCallback(own.now.begin_raw(), near);
+        tree.find(self.now, reach, found);
         for (const auto &[j, square] : found)
           {
-            if (j == first + k || std::sqrt(square) > distance_of(own, list[j]) + skin)
+            if (j == first + k || std::sqrt(square) > distance_of(self, list[j]) + skin)
               continue;
             if (!known)
               bonds_of(asked[k], bonds);
             known = true;
-            if (may_touch(own, list[j], bonds))
+            if (may_touch(self, list[j], bonds))
               result[k].push_back(j);
           }
         std::sort(result[k].begin(), result[k].end(), [&](const auto a, const auto b) {
@@ -330,6 +292,7 @@ namespace PeriDeal
             ghosts.add_index(list[j].number);
         }
     rows.clear();
+    this->forces.clear();
     any_pairs = Utilities::MPI::sum(n_pairs, all) > 0.;
     if (!any_pairs)
       return;
@@ -338,7 +301,7 @@ namespace PeriDeal
     places.reinit(interleaved(layout, dim));
     for (std::size_t k = 0; k < others.size(); ++k)
       {
-        Row row{asked[k], {}, {}};
+        Row row{asked[k], {}};
         for (const unsigned int j : others[k])
           row.partners.push_back({layout.global_to_local(list[j].number),
                                   std::min(list[first + k].stiffness, list[j].stiffness),
@@ -351,57 +314,47 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ShortRangeContact<dim>::show(const Vector &values, const bool deformed) const
+  template <typename Rows, typename Visit>
+  void ShortRangeContact<dim>::for_each_pair(Rows         &of,
+                                             const Vector &values,
+                                             const bool    deformed,
+                                             const Visit  &visit) const
   {
+    if (!any_pairs)
+      return;
     for (const unsigned int i : asked)
       for (unsigned int d = 0; d < dim; ++d)
         places.local_element(dim * i + d) =
           values.local_element(dim * i + d) + (deformed ? nodes.position(i)[d] : 0.);
     places.update_ghost_values();
+    for (auto &row : of)
+      for (auto &partner : row.partners)
+        {
+          Tensor<1, dim> difference;
+          for (unsigned int d = 0; d < dim; ++d)
+            difference[d] = places.local_element(dim * row.node + d) -
+                            places.local_element(dim * partner.node + d);
+          visit(row, partner, difference);
+        }
   }
 
 
   template <int dim>
-  Tensor<1, dim> ShortRangeContact<dim>::difference(const unsigned int a,
-                                                    const unsigned int b) const
+  void ShortRangeContact<dim>::find_forces(const Vector &u) const
   {
-    Tensor<1, dim> result;
-    for (unsigned int d = 0; d < dim; ++d)
-      result[d] = places.local_element(dim * a + d) - places.local_element(dim * b + d);
-    return result;
-  }
-
-
-  template <int dim>
-  void ShortRangeContact<dim>::add_forces(Vector &y, const Vector &u, const double multiple) const
-  {
-    touch_here = false;
-    if (!any_pairs)
-      return;
-    show(u, true);
-    for (const Row &row : rows)
-      {
-        row.force = 0.;
-        for (const Partner &partner : row.partners)
-          {
-            const Tensor<1, dim> apart = difference(row.node, partner.node);
-            const double         r     = apart.norm();
-            if (r >= partner.distance || r == 0.)
-              continue;
-            row.force += partner.stiffness * (partner.distance - r) / r * apart;
-            touch_here = true;
-          }
-      }
-    add_last_forces(y, multiple);
-  }
-
-
-  template <int dim>
-  void ShortRangeContact<dim>::add_last_forces(Vector &y, const double multiple) const
-  {
-    for (const Row &row : rows)
+    this->forces.clear();
+    for_each_pair(rows, u, true, [&](const Row &row, const Partner &partner, const auto &apart) {
+      const double r = apart.norm();
+      if (r >= partner.distance || r == 0.)
+        return;
+      if (this->forces.empty() || this->forces.back().first / dim != row.node)
+        for (unsigned int d = 0; d < dim; ++d)
+          this->forces.emplace_back(dim * row.node + d, 0.);
+      const double force = partner.stiffness * (partner.distance - r) / r;
       for (unsigned int d = 0; d < dim; ++d)
-        y.local_element(dim * row.node + d) -= multiple * row.force[d];
+        this->forces[this->forces.size() - dim + d].second -= force * apart[d];
+    });
+    touch_here = !this->forces.empty();
   }
 
 
@@ -410,15 +363,12 @@ namespace PeriDeal
   {
     if (!any_pairs)
       return 0.;
-    show(u, true);
     double sum = 0.;
-    for (const Row &row : rows)
-      for (const Partner &partner : row.partners)
-        {
-          const double overlap = partner.distance - difference(row.node, partner.node).norm();
-          if (overlap > 0.) // half of it, the other half is the partner's
-            sum += 0.25 * partner.stiffness * overlap * overlap;
-        }
+    for_each_pair(rows, u, true, [&](const Row &, const Partner &partner, const auto &apart) {
+      const double overlap = partner.distance - apart.norm();
+      if (overlap > 0.) // half of it, the other half is the partner's
+        sum += 0.25 * partner.stiffness * overlap * overlap;
+    });
     return Utilities::MPI::sum(sum, nodes.communicator());
   }
 
@@ -426,39 +376,27 @@ namespace PeriDeal
   template <int dim>
   void ShortRangeContact<dim>::linearize(const Vector &u)
   {
-    if (!any_pairs)
-      return;
-    show(u, true);
-    for (Row &row : rows)
-      for (Partner &partner : row.partners)
-        {
-          const Tensor<1, dim> apart   = difference(row.node, partner.node);
-          const double         r       = apart.norm();
-          const bool           touches = r < partner.distance && r > 0.;
-          partner.direction            = touches ? apart / r : Tensor<1, dim>();
-          partner.across = touches ? partner.stiffness * (partner.distance - r) / r : 0.;
-        }
+    for_each_pair(rows, u, true, [&](Row &, Partner &partner, const auto &apart) {
+      const double r       = apart.norm();
+      const bool   touches = r < partner.distance && r > 0.;
+      partner.direction    = touches ? apart / r : Tensor<1, dim>();
+      partner.across       = touches ? partner.stiffness * (partner.distance - r) / r : 0.;
+    });
   }
 
 
   template <int dim>
   void ShortRangeContact<dim>::add_tangent(Vector &y, const Vector &x) const
   {
-    if (!any_pairs)
-      return;
-    show(x, false);
-    for (const Row &row : rows)
-      for (const Partner &partner : row.partners)
-        {
-          if (partner.across == 0.)
-            continue;
-          const Tensor<1, dim> change = difference(row.node, partner.node);
-          const Tensor<1, dim> force  = (partner.stiffness + partner.across) *
-                                         (partner.direction * change) * partner.direction -
-                                       partner.across * change;
-          for (unsigned int d = 0; d < dim; ++d)
-            y.local_element(dim * row.node + d) += force[d];
-        }
+    for_each_pair(rows, x, false, [&](const Row &row, const Partner &partner, const auto &change) {
+      if (partner.across == 0.)
+        return;
+      const Tensor<1, dim> force =
+        (partner.stiffness + partner.across) * (partner.direction * change) * partner.direction -
+        partner.across * change;
+      for (unsigned int d = 0; d < dim; ++d)
+        y.local_element(dim * row.node + d) += force[d];
+    });
   }
 
 
@@ -481,11 +419,10 @@ namespace PeriDeal
   template <int dim>
   std::size_t ShortRangeContact<dim>::memory_consumption() const
   {
-    std::size_t sum =
-      (stiffnesses.capacity() + spacings.capacity() + at_search.capacity() + at_loss.capacity()) *
-        sizeof(double) +
-      asked.capacity() * sizeof(unsigned int) + rows.capacity() * sizeof(Row) +
-      places.locally_owned_size() * sizeof(double);
+    std::size_t sum = own.capacity() * sizeof(Own) +
+                      (at_search.capacity() + at_loss.capacity()) * sizeof(double) +
+                      asked.capacity() * sizeof(unsigned int) + rows.capacity() * sizeof(Row) +
+                      places.locally_owned_size() * sizeof(double);
     for (const Row &row : rows)
       sum += row.partners.capacity() * sizeof(Partner);
     return sum;

@@ -179,8 +179,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  double SolidBondsBesideElements<dim>::add_all(TrilinosWrappers::SparseMatrix &matrix,
-                                                const CrackSideFactors         *factors) const
+  double SolidBondsBesideElements<dim>::add_to(TrilinosWrappers::SparseMatrix &matrix,
+                                               const CrackSideFactors         *factors) const
   {
     Rows   rows;
     double n = 0.;
@@ -189,14 +189,6 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes().n_owned(); ++i)
       n += add_family(matrix, factors == nullptr, i, 1., rows);
     return n;
-  }
-
-
-  template <int dim>
-  double SolidBondsBesideElements<dim>::add_to(TrilinosWrappers::SparseMatrix &matrix,
-                                               const CrackSideFactors         &factors) const
-  {
-    return add_all(matrix, &factors);
   }
 
 
@@ -214,13 +206,6 @@ namespace PeriDeal
         n += add_family(matrix, false, i, multiple, rows);
       }
     return n;
-  }
-
-
-  template <int dim>
-  void SolidBondsBesideElements<dim>::add_intact(TrilinosWrappers::SparseMatrix &matrix) const
-  {
-    add_all(matrix, nullptr);
   }
 
 

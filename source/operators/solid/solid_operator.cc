@@ -10,9 +10,9 @@
 #include <perideal/base/node_loops.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
-#include <perideal/laws/elasticity.h>
 #include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/solid/solid_operator.h>
+#include <perideal/operators/solid/thermal_strains.h>
 
 #include <algorithm>
 #include <map>
@@ -116,17 +116,16 @@ namespace PeriDeal
   template <int dim>
   void SolidOperator<dim>::add_contact(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    if (!latest.contact_is_loaded)
-      contact->keep_for_surrogate();
-    latest.contact_is_loaded = false;
     std::map<types::global_dof_index, std::map<types::global_dof_index, double>> added;
     const Vector held = held_unknowns();
     contact->add_to_surrogate(
       [&](const unsigned int row, const unsigned int column, const double value) {
         if (held.local_element(row) == 0. && held.local_element(column) == 0.)
           added[unknowns->local_to_global(row)][unknowns->local_to_global(column)] += value;
-      });
-    const MPI_Comm all = unknowns->get_mpi_communicator();
+      },
+      !latest.contact_is_loaded);
+    latest.contact_is_loaded = false;
+    const MPI_Comm all       = unknowns->get_mpi_communicator();
     if (Utilities::MPI::max(added.empty() ? 0 : 1, all) == 0)
       return;
     const IndexSet owned = unknowns->locally_owned_range();
@@ -257,9 +256,7 @@ namespace PeriDeal
   template <int dim>
   void SolidOperator<dim>::set_contact_strains()
   {
-    const bool warm = this->temperature_change().size() > 0 ||
-                      !is_zero(body.elasticity.temperature_change);
-    contact->set_strains(warm ?
+    contact->set_strains(is_warm() ?
                            [this](const unsigned int node) { return thermal_strain_at(node); } :
                            std::function<double(const unsigned int)>());
   }
@@ -339,11 +336,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  double SolidOperator<dim>::temperature_change_at(const unsigned int node) const
+  double SolidOperator<dim>::thermal_strain_at(const unsigned int node) const
   {
-    const Vector &at_nodes = this->temperature_change();
-    return at_nodes.size() > 0 ? at_nodes.local_element(node) :
-                                 body.elasticity.temperature_change.value(position(node));
+    const Vector     &at_nodes = this->temperature_change();
+    const Point<dim> &p        = position(node);
+    return thermal_strain(body,
+                          p,
+                          at_nodes.size() > 0 ? at_nodes.local_element(node) :
+                                                body.elasticity.temperature_change.value(p));
+  }
+
+
+  template <int dim>
+  bool SolidOperator<dim>::is_warm() const
+  {
+    return this->temperature_change().size() > 0 || !is_zero(body.elasticity.temperature_change);
   }
 
 

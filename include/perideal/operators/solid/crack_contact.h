@@ -58,11 +58,8 @@ namespace PeriDeal
     double change(const std::vector<unsigned int> &of_nodes, const Vector &u) override;
     void   renew() override;
     void   set_strains(const std::function<double(const unsigned int)> &strain_at) override;
-    void   add_forces(Vector &y, const Vector &u, const double multiple) const override;
-    void   add_last_forces(Vector &y, const double multiple) const override;
     void   add_tangent(Vector &y, const Vector &x) const override;
-    void   keep_for_surrogate() override;
-    void   add_to_surrogate(const SolidContact::EntryAction &add) const override;
+    void   add_to_surrogate(const SolidContact::EntryAction &add, const bool anew) override;
 
     /** The energy of all nodes that touch at u, found or not. */
     double energy(const Vector &u) const override;
@@ -70,6 +67,9 @@ namespace PeriDeal
     /** Which nodes touch, and which did so when the surrogate was made. */
     void        exchange(Archive &archive, const NodeKeys &keys) override;
     std::size_t memory_consumption() const override;
+
+  protected:
+    void find_forces(const Vector &u) const override;
 
   private:
     /** Of a bond that is lost. */
@@ -82,11 +82,10 @@ namespace PeriDeal
     /** Of an owned node that has lost bonds, or had. */
     struct Row
     {
-      std::vector<End>               ends;
-      double                         weight   = 0.; // c/sum of k a^2; 0: no contact
-      double                         strained = 0.; // what thermal strains have of g
-      bool                           touches = false, in_surrogate = false;
-      mutable dealii::Tensor<1, dim> force; // on the node, at last
+      std::vector<End> ends;
+      double           weight   = 0.; // c/sum of k a^2; 0: no contact
+      double           strained = 0.; // what thermal strains have of g
+      bool             touches = false, in_surrogate = false;
     };
 
     /** What the faces of a node have for directions, by its place. */
@@ -102,16 +101,16 @@ namespace PeriDeal
      */
     double set_rows(const std::vector<unsigned int> &of_nodes, const Vector *u = nullptr);
     void   make_row(const unsigned int place);
-    bool   has_whole_bonds_across(const dealii::Tensor<1, dim> &normal) const;
     void   find_strained(const unsigned int place);
     Face   face(const unsigned int place) const;
-    double gap(const unsigned int place, const double *u) const;
-    double size_of_terms(const unsigned int place, const double *u) const;
+    /** g at u. @param size if given, what its terms have for a size is added */
+    double gap(const unsigned int place, const double *u, double *size = nullptr) const;
     bool   is_closed(const unsigned int place, const double *u) const;
     double energy_of(const unsigned int place, const double *u) const;
-    void   find_pressures(const Vector &u, const bool strained) const;
-    dealii::Tensor<1, dim> force_of(const unsigned int place) const;
-    void                   find_any();
+    /** add(unknown, value) for K x where nodes touch, thermal strains apart or not. */
+    template <typename Add>
+    void visit_forces(const Vector &x, const bool strained, const Add &add) const;
+    void find_any();
 
     template <typename Visit>
     void for_each_end(const unsigned int place, const Visit &visit) const;

@@ -3,14 +3,9 @@
 
 #pragma once
 
-#include <deal.II/dofs/dof_handler.h>
-
-#include <perideal/laws/elasticity.h>
-#include <perideal/mesh/cell_search.h>
-#include <perideal/operators/parts/crack_side_factors.h>
-#include <perideal/operators/parts/cut_cells.h>
 #include <perideal/operators/parts/element_matrix.h>
 #include <perideal/operators/parts/hanging_nodes.h>
+#include <perideal/operators/solid/elastic_cells.h>
 #include <perideal/operators/solid/element_loads.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid/solid_operator.h>
@@ -21,11 +16,7 @@
 namespace PeriDeal
 {
   /**
-   * Linear elasticity with finite elements Qp: K_ab = int lambda grad_a (x) grad_b + mu (grad_b (x)
-   * grad_a + grad_a . grad_b I), in 2D with the lambda of plane stress or plane strain, in 1D with
-   * Young's modulus. Material, thermal strain and loads are evaluated at quadrature points, a
-   * temperature at nodes interpolated there. The thermal strain alpha dT (in plane strain (1 + nu)
-   * alpha dT) makes the load int grad_a (dim lambda + 2 mu) alpha dT.
+   * Linear elasticity with finite elements Qp (ElasticCells).
    *
    * One scalar DoFHandler numbers the nodes; each has dim unknowns, interleaved. Hanging nodes of a
    * graded mesh follow from their neighbours: K is C^T K C, and their rows, without mass, are those
@@ -33,8 +24,8 @@ namespace PeriDeal
    *
    * With a coupling its bonds and families are added, with their thermal loads
    * (SolidBondsBesideElements), and the cells changed (Coupling); K is as symmetric as the
-   * coupling. Cells that a crack cuts carry nothing (`Mesh = removed`), so that in a zone the bonds
-   * around the crack alone hold what they do; unless the crack is cut into the mesh.
+   * coupling. Of cells that a crack cuts nothing is left, so that in a zone the bonds around the
+   * crack alone hold what they do.
    *
    * Where bonds may break (ZoneBreaking) they are no part of the matrix but a list beside it, and
    * what breaks or joins the zone changes only cells and rows beside it. The preconditioner is then
@@ -57,7 +48,6 @@ namespace PeriDeal
     ElasticElements(const dealii::DoFHandler<dim> &dof_handler,
                     const BodyParameters<dim>     &body,
                     std::unique_ptr<Coupling<dim>> coupling = nullptr);
-    ~ElasticElements() override;
 
     Spectrum spectrum() const override;
     bool     surrogate_is_exact() const override
@@ -75,12 +65,6 @@ namespace PeriDeal
     {
       return zone_bonds && zone_bonds->coupling().zone_follows_cracks() &&
              (this->has_growing_cracks() || zone_follows_stretches());
-    }
-
-    /** Nodes join the zone where the body is stretched (`Zone = follow`). */
-    bool zone_follows_stretches() const
-    {
-      return breaking && body.coupling.follows_stretches();
     }
 
     const BreakHistory *break_history() const override
@@ -107,7 +91,7 @@ namespace PeriDeal
 
     std::pair<unsigned long long, std::string> stretched_outside(const Vector &u) const override
     {
-      return breaking ? breaking->stretched_outside(u, dofs) :
+      return breaking ? breaking->stretched_outside(u, cells.dof_handler()) :
                         std::pair<unsigned long long, std::string>();
     }
 
@@ -174,13 +158,13 @@ namespace PeriDeal
     /** Cells of this process that keep nothing, by active cell index. */
     const std::vector<bool> &cut_cells() const
     {
-      return parted.empty() ? cut_by_cracks.flags() : parted;
+      return cells.cut();
     }
 
     /** Nodes join that will do so on the whole path of the cracks; K stays as it is. Collective. */
     void join_whole_way()
     {
-      zone_bonds->join(body.cracks.end_time);
+      zone_bonds->coupling().join(body.cracks.end_time);
     }
 
     /**
@@ -194,14 +178,24 @@ namespace PeriDeal
      * Lowest eigenvalue of what the coupling leaves of any cell, in units of its shear modulus
      * times h^(dim-2). Collective.
      */
-    double lowest_remainder() const;
+    double lowest_remainder() const
+    {
+      return dealii::Utilities::MPI::min(cells.lowest_remainder(), nodes->get_mpi_communicator());
+    }
 
   protected:
     void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool join_zone(const ChangeSet<dim> &change) override;
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
     void find_loads(Vector &loads, const double t) const override;
-    void surrogate_made() const override;
+    void surrogate_made() const override
+    {
+      if (!breaking)
+        return;
+      n_broken_of_surrogate = breaking->n_broken_pairs();
+      breaking->keep_zone();
+    }
+
     void exchange_bonds(Archive                     &archive,
                         const NodeKeys              &keys,
                         const std::function<void()> &at_surrogate) override;
@@ -216,28 +210,26 @@ namespace PeriDeal
     using SolidOperator<dim>::stiffness_diagonal;
     using SolidOperator<dim>::thermal_loads;
 
-    struct CellData;
-    using Cell  = typename dealii::DoFHandler<dim>::active_cell_iterator;
-    using Boxes = std::vector<dealii::BoundingBox<dim>>;
+    using Cell  = typename ElasticCells<dim>::Cell;
+    using Boxes = typename ElasticCells<dim>::Boxes;
 
-    /** Of cells alone, with rows of other processes; not compressed. */
-    dealii::TrilinosWrappers::SparsityPattern element_pattern() const;
-    dealii::TrilinosWrappers::SparsityPattern pattern() const; // of K as it is kept
-
-    void find_positions();
     void find_conditions();
-    void assemble();
-    void change_cell(const Cell &cell, CellData &data) const;
-    void find_crack_factors();
-    bool any_thermal() const;
-    void add_thermal(const CellData &data, double &energy);
-    void finish_thermal(const double energy);
-    void find_thermal();
+    /** Of K: the cells, and bonds now in the zone or those of all nodes that may ever join it. */
+    dealii::TrilinosWrappers::SparsityPattern pattern(const bool with_bonds, const bool ever) const;
+    /** @param thermal_alone thermal loads, of K as it is; else all that is there */
+    void assemble(const bool thermal_alone);
+    void set_all_bonds();
     void find_diagonal();
-    bool scales_beside_cracks() const;
-    void add_parts(const std::vector<Cell>         &of_cells,
-                   const std::vector<unsigned int> &of_nodes,
-                   const double                     multiple);
+    void throw_if_isolated() const;
+    /**
+     * Add a multiple of what cells and rows of bonds have of K.
+     * @param u null, or where bonds break: ghosts are up to date; what is added to forces and
+     *          thermal loads, too. Returns the energy at u of what is added.
+     */
+    double add_parts(const std::vector<Cell>         &of_cells,
+                     const std::vector<unsigned int> &rows,
+                     const double                     multiple,
+                     const Vector                    *u = nullptr);
     /**
      * Take anew what is added to K by cells within a distance of boxes and by bonds within the
      * reach of a family. Collective.
@@ -257,37 +249,27 @@ namespace PeriDeal
                      const std::vector<unsigned int> &rows,
                      const Vector                    &u,
                      const std::function<void()>     &make_change);
-    /** As add_parts(), with thermal loads. Returns the energy at u of what is added. */
-    double add_zone_parts(const std::vector<Cell>         &of_cells,
-                          const std::vector<unsigned int> &rows,
-                          const double                     multiple,
-                          const Vector                    &u);
-    bool   join_zone_around(const std::vector<dealii::Point<dim>> &places, const Vector &u);
     void   mend_diagonal(const std::vector<Cell> &of_cells, const std::vector<unsigned int> &rows);
-    std::vector<Cell> known_cells() const; // own and ghosts
-    void              note_parted(const std::vector<Cell> &of_cells);
-    void              set_all_bonds();
-    void              share_rows_for_steps() const;
-    void              throw_if_isolated() const;
-    template <typename Visit>
-    void for_each_own_cell(const Visit &visit) const;
+    /** Let nodes join the zone where u, whose ghosts are up to date, stretches the body. */
+    bool join_stretched(const Vector &u);
 
-    const dealii::DoFHandler<dim>                 &dofs;
+    /** Nodes join the zone where the body is stretched (`Zone = follow`). */
+    bool zone_follows_stretches() const
+    {
+      return breaking && body.coupling.follows_stretches();
+    }
+
     std::unique_ptr<SolidBondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     std::unique_ptr<ZoneBreaking<dim>>             breaking;   // null: no bonds may break
-    CutCells<dim>                                  cut_by_cracks;
+    ElasticCells<dim>                              cells;
     HangingNodes<dim>                              hanging;
     const ElementLoads<dim>                        mechanical;
     std::vector<dealii::Point<dim>>                positions;
     mutable ElementMatrix<dim, dim>                stiffness;
-    std::unique_ptr<CellData>                      cell_data;
     Vector                                         volumes;
-    CrackSideFactors                               crack_factors;
-    std::unique_ptr<CellSearch<dim>>               search;       // where cracks grow
     double                                         n_bonds = 0.; // of this process
     double              thermal_energy = 0.; // of a body that is held everywhere
-    std::vector<bool>   parted;       // cells that cracks cut or breaking bonds part; empty before
-    mutable Vector      force_change; // of K u, by what broke or joined at the last u
+    mutable Vector      force_change;        // of K u, by what broke or joined at the last u
     mutable bool        changes_forces        = false;
     mutable std::size_t n_broken_of_surrogate = 0;
   };

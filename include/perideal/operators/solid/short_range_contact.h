@@ -62,15 +62,23 @@ namespace PeriDeal
       is_found = false;
     }
 
-    void        add_forces(Vector &y, const Vector &u, const double multiple) const override;
-    void        add_last_forces(Vector &y, const double multiple) const override;
     void        linearize(const Vector &u) override;
     void        add_tangent(Vector &y, const Vector &x) const override;
     double      row_bound(const unsigned int node) const override;
     double      energy(const Vector &u) const override;
     std::size_t memory_consumption() const override;
 
+  protected:
+    void find_forces(const Vector &u) const override;
+
   private:
+    /** Of an owned node. */
+    struct Own
+    {
+      double stiffness, spacing;
+      bool   is_asked = false, is_whole = false;
+    };
+
     /** What a node is known by to all processes; see flattened(). */
     struct Place
     {
@@ -90,9 +98,8 @@ namespace PeriDeal
 
     struct Row
     {
-      unsigned int                   node;
-      std::vector<Partner>           partners;
-      mutable dealii::Tensor<1, dim> force; // on the node, at last
+      unsigned int         node;
+      std::vector<Partner> partners;
     };
 
     void                                   find_asked();
@@ -104,18 +111,21 @@ namespace PeriDeal
                                                      const Place                     &b,
                                                      const std::vector<unsigned int> &bonds_of_a) const;
     double                                 distance_of(const Place &a, const Place &b) const;
-    void                                   show(const Vector &values, const bool deformed) const;
-    double                 farthest_move(const Vector &u, const std::vector<double> &since) const;
-    std::vector<double>    values_of_asked(const Vector &u) const;
-    dealii::Tensor<1, dim> difference(const unsigned int a, const unsigned int b) const;
+    double              farthest_move(const Vector &u, const std::vector<double> &since) const;
+    std::vector<double> values_of_asked(const Vector &u) const;
+
+    /** Call visit(row, partner, difference of both places or values) for all pairs of the rows. */
+    template <typename Rows, typename Visit>
+    void for_each_pair(Rows         &of,
+                       const Vector &values,
+                       const bool    deformed,
+                       const Visit  &visit) const;
 
     const Nodes<dim>         &nodes;
     const double              horizon;
     const BondsOf             bonds_of;
-    const std::vector<double> stiffnesses;
-    std::vector<double>       spacings; // of owned nodes
-    std::vector<bool>         is_asked, is_whole;
-    std::vector<unsigned int> asked;              // owned nodes
+    std::vector<Own>          own;                // of owned nodes
+    std::vector<unsigned int> asked;              // of these
     std::vector<double>       at_search, at_loss; // u of these; the latter empty: none since
     std::vector<Row>          rows;               // in the order of nodes
     bool                      is_found = false, any_pairs = false;

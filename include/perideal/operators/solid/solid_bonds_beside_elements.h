@@ -52,17 +52,6 @@ namespace PeriDeal
       return coupled->families().nodes();
     }
 
-    void apply_change(const ChangeSet<dim> &change)
-    {
-      coupled->apply_change(change);
-    }
-
-    /** As Coupling::join(). */
-    void join(const double time)
-    {
-      coupled->join(time);
-    }
-
     /** NodeFamilies::mirrors(), if the coupling has families. */
     std::vector<dealii::types::boundary_id> mirrors() const
     {
@@ -79,12 +68,6 @@ namespace PeriDeal
     {
       const bool changed = coupled->change_cell(cell, stiffness);
       return coupled->finish_cell(cell, stiffness) || changed;
-    }
-
-    /** A bond between two vertices of a cell has broken. */
-    bool is_parted(const typename Coupling<dim>::Cell &cell) const
-    {
-      return coupled->parts_cell(cell);
     }
 
     /** How far bonds and families reach. */
@@ -105,9 +88,10 @@ namespace PeriDeal
     /**
      * Add to K. Returns the number of this process's unbroken bonds, those with other processes
      * counted half.
+     * @param factors null: as if no crack were there
      */
     double add_to(dealii::TrilinosWrappers::SparseMatrix &matrix,
-                  const CrackSideFactors                 &factors) const;
+                  const CrackSideFactors                 *factors) const;
 
     /**
      * Add a multiple of what these owned nodes, each once, have of that: the rows of their pairs,
@@ -117,9 +101,6 @@ namespace PeriDeal
                   const CrackSideFactors                 &factors,
                   const std::vector<unsigned int>        &of_nodes,
                   const double                            multiple) const;
-
-    /** The same as if no crack were there, without factors. */
-    void add_intact(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
     /**
      * Add the loads that hold a body with thermal strains at rest. Returns this process's energy
@@ -159,8 +140,6 @@ namespace PeriDeal
                       const unsigned int                      node,
                       const double                            multiple,
                       Rows                                   &rows) const;
-    double add_all(dealii::TrilinosWrappers::SparseMatrix &matrix,
-                   const CrackSideFactors                 *factors) const;
     /** CrackContact::FamilyOf. */
     double contact_family(const unsigned int node, std::vector<FacingBond<dim>> &list) const;
     /** xi xi^T, of which a bond's weight is the factor. */

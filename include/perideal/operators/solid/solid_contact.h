@@ -7,6 +7,7 @@
 #include <perideal/base/types.h>
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -49,11 +50,18 @@ namespace PeriDeal
     virtual void set_strains(const std::function<double(const unsigned int)> & /*strain_at*/) {}
 
     /** y += a multiple of -F(u), F the forces on nodes. */
-    virtual void add_forces(Vector & /*y*/, const Vector & /*u*/, const double /*multiple*/) const
-    {}
+    void add_forces(Vector &y, const Vector &u, const double multiple) const
+    {
+      find_forces(u);
+      add_last_forces(y, multiple);
+    }
 
     /** Add a multiple of what add_forces() gave at last, since update(). Not collective. */
-    virtual void add_last_forces(Vector & /*y*/, const double /*multiple*/) const {}
+    void add_last_forces(Vector &y, const double multiple) const
+    {
+      for (const auto &[unknown, force] : forces)
+        y.local_element(unknown) += multiple * force;
+    }
 
     /** Make add_tangent() that at u, where it is not the same at any u. */
     virtual void linearize(const Vector & /*u*/) {}
@@ -87,13 +95,17 @@ namespace PeriDeal
     using EntryAction =
       std::function<void(const unsigned int row, const unsigned int column, const double value)>;
 
-    /** What touches now is what add_to_surrogate() gives, until this is called again. */
-    virtual void keep_for_surrogate() {}
-
     /**
      * Entries of springs about as stiff as K, for a preconditioner; some are in rows of other
      * processes. Not collective.
+     * @param anew of what touches now, else of what did so when this was asked last
      */
-    virtual void add_to_surrogate(const EntryAction & /*add*/) const {}
+    virtual void add_to_surrogate(const EntryAction & /*add*/, const bool /*anew*/) {}
+
+  protected:
+    /** Set the forces to -F(u). */
+    virtual void find_forces(const Vector & /*u*/) const {}
+
+    mutable std::vector<std::pair<unsigned int, double>> forces; // by owned unknowns; at last
   };
 } // namespace PeriDeal

@@ -5,7 +5,6 @@
 
 #include <deal.II/base/partitioner.h>
 
-#include <perideal/laws/elasticity.h>
 #include <perideal/operators/solid/displacement_conditions.h>
 #include <perideal/operators/solid/solid_contact.h>
 #include <perideal/scene/crack_history.h>
@@ -106,6 +105,8 @@ namespace PeriDeal
       return dim;
     }
 
+    void fill_noise(Vector &vector) const override;
+
     /** Place of a node of this process, by local number. */
     virtual const dealii::Point<dim> &position(const unsigned int node) const = 0;
 
@@ -184,19 +185,10 @@ namespace PeriDeal
     /** Positive on unknowns that are not free; ghosts up to date. */
     Vector held_unknowns() const;
 
-    void fill_noise(Vector &vector) const override;
+    double thermal_strain_at(const unsigned int node) const;
 
-    double temperature_change_at(const unsigned int node) const;
-    double thermal_strain(const dealii::Point<dim> &p, const double temperature_change) const
-    {
-      return thermal_strain_factor(body.material.moduli(p), dim, body.elasticity.plane) *
-             body.material.thermal_expansion.value(p) * temperature_change;
-    }
-
-    double thermal_strain_at(const unsigned int node) const
-    {
-      return thermal_strain(position(node), temperature_change_at(node));
-    }
+    /** Thermal strains may be other than zero. Not collective. */
+    bool is_warm() const;
 
     const BodyParameters<dim>                   &body;
     const CrackHistory<dim>                      history;

@@ -5,12 +5,26 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/laws/elasticity.h>
+#include <perideal/scene/body_parameters.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace PeriDeal
 {
+  /** alpha dT (in plane strain (1 + nu) alpha dT) of a body at a point. */
+  template <int dim>
+  double thermal_strain(const BodyParameters<dim> &body,
+                        const dealii::Point<dim>  &p,
+                        const double               temperature_change)
+  {
+    return thermal_strain_factor(body.material.moduli(p), dim, body.elasticity.plane) *
+           body.material.thermal_expansion.value(p) * temperature_change;
+  }
+
+
   /** The thermal strains of nodes, owned and ghosts; those of bonds are the means of both ends. */
   class ThermalStrains
   {
