@@ -4,6 +4,7 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/analysis/bond_intensities.h>
+#include <perideal/base/instantiate.h>
 
 #include <algorithm>
 
@@ -88,14 +89,5 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                 \
-  template std::vector<StressIntensity> bond_intensities(const Scene<dim> &,                      \
-                                                         const Families<dim> &,                   \
-                                                         const typename FamilyFit<dim>::Values &, \
-                                                         const bool,                              \
-                                                         const double,                            \
-                                                         const double);
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION_2_3(bond_intensities);
 } // namespace PeriDeal

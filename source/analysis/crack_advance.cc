@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/analysis/crack_advance.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/point_order.h>
 
 #include <algorithm>
@@ -254,14 +255,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                             \
-  template struct CrackFront<dim>;                                                            \
-  template std::vector<CrackAdvance<dim>> find_advances(const std::vector<CrackFacet<dim>> &, \
-                                                        const std::vector<CrackFront<dim>> &, \
-                                                        const double,                         \
-                                                        const double);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(struct CrackFront);
+  PERIDEAL_INSTANTIATE_FUNCTION(find_advances);
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 
 #include <perideal/analysis/crack_surface.h>
 #include <perideal/base/gathered_lists.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/point_order.h>
 
 #include <algorithm>
@@ -224,11 +225,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)  \
-  template struct CrackFacet<dim>; \
-  template class CrackSurface<dim>;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(struct CrackFacet);
+  PERIDEAL_INSTANTIATE_CLASS(class CrackSurface);
 } // namespace PeriDeal

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/analysis/family_fit.h>
+#include <perideal/base/instantiate.h>
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -157,7 +158,5 @@ namespace PeriDeal
   }
 
 
-  template class FamilyFit<1>;
-  template class FamilyFit<2>;
-  template class FamilyFit<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FamilyFit);
 } // namespace PeriDeal

@@ -3,6 +3,8 @@
 
 #include "own_side.h"
 
+#include <perideal/base/instantiate.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <map>
@@ -119,16 +121,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                       \
-  template bool                    parted(const std::vector<CrackGeometry<dim>> &,      \
-                                          const Point<dim> &,                           \
-                                          const Point<dim> &);                          \
-  template std::vector<Share<dim>> fit_own_side(const CellSearch<dim> &,                \
-                                                const typename CellSearch<dim>::Cell &, \
-                                                const Point<dim> &,                     \
-                                                const std::vector<CrackGeometry<dim>> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(parted);
+  PERIDEAL_INSTANTIATE_FUNCTION(fit_own_side);
 } // namespace PeriDeal

@@ -9,6 +9,7 @@
 
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/gathered_lists.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/cell_search.h>
 #include <perideal/scene/crack_geometry.h>
@@ -433,7 +434,5 @@ namespace PeriDeal
     return result;
   }
 
-  template class PointEvaluator<1>;
-  template class PointEvaluator<2>;
-  template class PointEvaluator<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class PointEvaluator);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/geometry_info.h>
 
 #include <perideal/base/clipped.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/crack_faces.h>
 
 #include <algorithm>
@@ -272,12 +273,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                        \
-  template double measure_on_faces(const CoarseMesh<dim> &, const CrackGeometry<dim> &); \
-  template bool   lies_on_faces(const CoarseMesh<dim> &, const CrackGeometry<dim> &);    \
-  template void   cut_along_faces(CoarseMesh<dim> &, const std::vector<CrackGeometry<dim>> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(measure_on_faces);
+  PERIDEAL_INSTANTIATE_FUNCTION(lies_on_faces);
+  PERIDEAL_INSTANTIATE_FUNCTION(cut_along_faces);
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 #include <deal.II/distributed/tria_base.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/grading.h>
 
 #include <algorithm>
@@ -315,11 +316,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim) \
-  template class Grading<dim>;    \
-  template CellWork<dim> work_of_cells(const Scene<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class Grading);
+  PERIDEAL_INSTANTIATE_FUNCTION(work_of_cells);
 } // namespace PeriDeal

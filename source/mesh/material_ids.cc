@@ -4,6 +4,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/material_ids.h>
 
@@ -58,7 +59,5 @@ namespace PeriDeal
     };
   }
 
-  template void set_material_ids(const Triangulation<1> &, const Regions &);
-  template void set_material_ids(const Triangulation<2> &, const Regions &);
-  template void set_material_ids(const Triangulation<3> &, const Regions &);
+  PERIDEAL_INSTANTIATE_FUNCTION(set_material_ids);
 } // namespace PeriDeal

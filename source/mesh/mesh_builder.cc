@@ -6,6 +6,7 @@
 #include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/crack_faces.h>
@@ -390,16 +391,6 @@ namespace PeriDeal
   }
 
 
-  template std::unique_ptr<Triangulation<1>> build_mesh(const Scene<1> &,
-                                                        const MPI_Comm,
-                                                        std::vector<std::string> &);
-  template std::unique_ptr<Triangulation<2>> build_mesh(const Scene<2> &,
-                                                        const MPI_Comm,
-                                                        std::vector<std::string> &);
-  template std::unique_ptr<Triangulation<3>> build_mesh(const Scene<3> &,
-                                                        const MPI_Comm,
-                                                        std::vector<std::string> &);
-  template void                              require_cells_everywhere(const Triangulation<1> &);
-  template void                              require_cells_everywhere(const Triangulation<2> &);
-  template void                              require_cells_everywhere(const Triangulation<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(build_mesh);
+  PERIDEAL_INSTANTIATE_FUNCTION(require_cells_everywhere);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/mesh_history.h>
 
 #include <set>
@@ -69,11 +70,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                \
+#define PERIDEAL_TEMPLATES(dim)                                  \
   template void MeshHistory::record(const Triangulation<dim> &); \
   template void MeshHistory::repeat(Triangulation<dim> &) const;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 #include <deal.II/base/utilities.h>
 #include <deal.II/dofs/dof_tools.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/process_end.h>
 #include <perideal/output/field_writer.h>
 
@@ -435,7 +436,5 @@ namespace PeriDeal
   }
 
 
-  template class FieldWriter<1>;
-  template class FieldWriter<2>;
-  template class FieldWriter<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FieldWriter);
 } // namespace PeriDeal

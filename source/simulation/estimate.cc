@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
@@ -418,26 +419,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                     \
-  template OutputEstimate           estimate_output(const Scene<dim> &,               \
-                                                    const double,                     \
-                                                    const std::vector<double> &,      \
-                                                    const unsigned int);              \
-  template std::vector<std::string> describe_costs(const Scene<dim> &,                \
-                                                   const double,                      \
-                                                   const double,                      \
-                                                   const double,                      \
-                                                   const std::vector<double> &,       \
-                                                   const MPI_Comm);                   \
-  template RunEstimate              estimate_run(const Scene<dim> &, const MPI_Comm); \
-  template ModelEstimate            estimate_model(const Scene<dim> &,                \
-                                                   const std::string &,               \
-                                                   const MPI_Comm,                    \
-                                                   double &);                         \
-  template bool                     is_large(const Scene<dim> &, const MPI_Comm);     \
-  template void                     require_memory(const Scene<dim> &, const MPI_Comm);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(estimate_output);
+  PERIDEAL_INSTANTIATE_FUNCTION(describe_costs);
+  PERIDEAL_INSTANTIATE_FUNCTION(estimate_run);
+  PERIDEAL_INSTANTIATE_FUNCTION(estimate_model);
+  PERIDEAL_INSTANTIATE_FUNCTION(is_large);
+  PERIDEAL_INSTANTIATE_FUNCTION(require_memory);
 } // namespace PeriDeal

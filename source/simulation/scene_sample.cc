@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
@@ -143,15 +144,8 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template double number_of<dim>(const std::array<unsigned int, dim> &, const unsigned int);       \
-  template std::array<unsigned int, dim> coarse_cells<dim>(const std::array<unsigned int, dim> &,  \
-                                                           const double);                          \
-  template std::shared_ptr<Scene<dim>>   coarse_scene<dim>(const Scene<dim> &,                     \
-                                                         const std::array<unsigned int, dim> &); \
-  template Sample                        take_sample<dim>(const Scene<dim> &, const MPI_Comm);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(number_of);
+  PERIDEAL_INSTANTIATE_FUNCTION(coarse_cells);
+  PERIDEAL_INSTANTIATE_FUNCTION(coarse_scene);
+  PERIDEAL_INSTANTIATE_FUNCTION(take_sample);
 } // namespace PeriDeal

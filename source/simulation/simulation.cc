@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
@@ -822,7 +823,5 @@ namespace PeriDeal
   }
 
 
-  template class Simulation<1>;
-  template class Simulation<2>;
-  template class Simulation<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class Simulation);
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 #include <deal.II/lac/solver_gmres.h>
 
 #include <perideal/base/diverged.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/scene.h>
@@ -273,7 +274,5 @@ namespace PeriDeal
   }
 
 
-  template void require_steady_state(const Scene<1> &);
-  template void require_steady_state(const Scene<2> &);
-  template void require_steady_state(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(require_steady_state);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/scene.h>
@@ -397,7 +398,5 @@ namespace PeriDeal
   }
 
 
-  template void require_stepper(const Scene<1> &);
-  template void require_stepper(const Scene<2> &);
-  template void require_stepper(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(require_stepper);
 } // namespace PeriDeal

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/diverged.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/rigid_motions.h>
 #include <perideal/scene/scene.h>
@@ -164,7 +165,5 @@ namespace PeriDeal
   }
 
 
-  template void require_equilibrium(const Scene<1> &);
-  template void require_equilibrium(const Scene<2> &);
-  template void require_equilibrium(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(require_equilibrium);
 } // namespace PeriDeal
