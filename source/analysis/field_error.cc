@@ -11,12 +11,11 @@
 
 #include <perideal/analysis/field_error.h>
 #include <perideal/analysis/point_evaluator.h>
+#include <perideal/analysis/quadratic_elements.h>
 #include <perideal/base/instantiate.h>
 #include <perideal/operators/parts/element_layout.h>
 
 #include <cmath>
-
-#include "element_vectors.h"
 
 namespace PeriDeal
 {

@@ -17,7 +17,6 @@
 #include <array>
 #include <cmath>
 
-#include "element_vectors.h"
 
 // Second derivatives of a field of bilinear elements, and what they add in the middles of edges,
 // faces and cells.

@@ -7,7 +7,6 @@
 #include <perideal/base/memory.h>
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
-#include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/problems/check_sides.h>
 #include <perideal/problems/computable.h>

@@ -5,7 +5,7 @@
 #include <perideal/output/tables.h>
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/with_formulas.h>
-#include <perideal/solvers/step_bounds.h>
+#include <perideal/solvers/step_tools.h>
 
 #include <algorithm>
 #include <cmath>
