@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/node_keys.h>
 #include <perideal/problems/result_record.h>
@@ -316,10 +317,6 @@ namespace ScalarWave
   }
 
 
-  template class WaveProblem<1>;
-  template class WaveProblem<2>;
-  template class WaveProblem<3>;
-  template class WaveFactory<1>;
-  template class WaveFactory<2>;
-  template class WaveFactory<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class WaveProblem);
+  PERIDEAL_INSTANTIATE_CLASS(class WaveFactory);
 } // namespace ScalarWave

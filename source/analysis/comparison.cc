@@ -6,6 +6,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <perideal/analysis/comparison.h>
+#include <perideal/base/instantiate.h>
 
 #include <algorithm>
 #include <cmath>
@@ -101,16 +102,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                 \
-  template void       interpolate_to(const DoFHandler<dim> &,     \
-                                     const Vector &,              \
-                                     const DoFHandler<dim> &,     \
-                                     Vector &);                   \
-  template Difference element_difference(const DoFHandler<dim> &, \
-                                         const Vector &,          \
-                                         const std::function<double(const Point<dim> &)> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(interpolate_to);
+  PERIDEAL_INSTANTIATE_FUNCTION(element_difference);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/matrix_product.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bounds/spectrum.h>
@@ -232,11 +233,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                      \
+#define PERIDEAL_TEMPLATES(dim)                                                        \
   template CouplingCertificate examine_coupling(const FEMOperator<dim> &, const bool); \
   template CouplingCertificate examine_coupling(const ElasticElements<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/exceptions.h>
 
 #include <perideal/analysis/decay_rate.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/gauss_rule.h>
 #include <perideal/laws/kernel.h>
 
@@ -117,13 +118,5 @@ namespace PeriDeal
   }
 
 
-  template std::vector<LatticeTerm> lattice_terms<1>(const std::vector<FamilyMember<1>> &,
-                                                     const Tensor<1, 1> &,
-                                                     const double);
-  template std::vector<LatticeTerm> lattice_terms<2>(const std::vector<FamilyMember<2>> &,
-                                                     const Tensor<1, 2> &,
-                                                     const double);
-  template std::vector<LatticeTerm> lattice_terms<3>(const std::vector<FamilyMember<3>> &,
-                                                     const Tensor<1, 3> &,
-                                                     const double);
+  PERIDEAL_INSTANTIATE_FUNCTION(lattice_terms);
 } // namespace PeriDeal

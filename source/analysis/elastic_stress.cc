@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/analysis/elastic_stress.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/elasticity.h>
 
 namespace PeriDeal
@@ -43,17 +44,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                  \
-  template SymmetricTensor<2, 3> full_stress(const SymmetricTensor<2, dim> &,      \
-                                             const BodyParameters<dim> &,          \
-                                             const Point<dim> &,                   \
-                                             const double);                        \
-  template SymmetricTensor<2, 3> stress_of_strain(const SymmetricTensor<2, dim> &, \
-                                                  const BodyParameters<dim> &,     \
-                                                  const Point<dim> &,              \
-                                                  const double);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(full_stress);
+  PERIDEAL_INSTANTIATE_FUNCTION(stress_of_strain);
 } // namespace PeriDeal

@@ -11,11 +11,11 @@
 
 #include <perideal/analysis/field_error.h>
 #include <perideal/analysis/point_evaluator.h>
+#include <perideal/analysis/quadratic_elements.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/parts/element_layout.h>
 
 #include <cmath>
-
-#include "element_vectors.h"
 
 namespace PeriDeal
 {
@@ -143,14 +143,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                               \
-  template class FieldError<dim>;                               \
-  template double difference_on_meshes(const DoFHandler<dim> &, \
-                                       const Vector &,          \
-                                       const DoFHandler<dim> &, \
-                                       const Vector &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class FieldError);
+  PERIDEAL_INSTANTIATE_FUNCTION(difference_on_meshes);
 } // namespace PeriDeal

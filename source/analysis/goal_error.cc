@@ -3,6 +3,7 @@
 
 #include <perideal/analysis/goal_error.h>
 #include <perideal/analysis/point_evaluator.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 
 #include <algorithm>
@@ -190,10 +191,6 @@ namespace PeriDeal
   }
 
 
-  template struct Goal<1>;
-  template struct Goal<2>;
-  template struct Goal<3>;
-  template class GoalErrors<1>;
-  template class GoalErrors<2>;
-  template class GoalErrors<3>;
+  PERIDEAL_INSTANTIATE_CLASS(struct Goal);
+  PERIDEAL_INSTANTIATE_CLASS(class GoalErrors);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <perideal/analysis/heat_flux.h>
+#include <perideal/base/instantiate.h>
 
 namespace PeriDeal
 {
@@ -176,24 +177,8 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                    \
-  template void bond_heat_flux<dim>(const DiffusionBonds<dim> &,     \
-                                    const Vector &,                  \
-                                    const std::vector<double> &,     \
-                                    VectorField<dim> &,              \
-                                    VectorField<dim> &);             \
-  template void coupled_heat_flux<dim>(const FEMOperator<dim> &,     \
-                                       const Vector &,               \
-                                       VectorField<dim> &,           \
-                                       VectorField<dim> &);          \
-  template void cut_fraction(const DiffusionBonds<dim> &, Vector &); \
-  template void element_heat_flux<dim>(const DoFHandler<dim> &,      \
-                                       const Material &,             \
-                                       const std::vector<bool> &,    \
-                                       const Vector &,               \
-                                       VectorField<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(bond_heat_flux);
+  PERIDEAL_INSTANTIATE_FUNCTION(coupled_heat_flux);
+  PERIDEAL_INSTANTIATE_FUNCTION(cut_fraction);
+  PERIDEAL_INSTANTIATE_FUNCTION(element_heat_flux);
 } // namespace PeriDeal

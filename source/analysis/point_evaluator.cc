@@ -9,6 +9,7 @@
 
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/gathered_lists.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/cell_search.h>
 #include <perideal/scene/crack_geometry.h>
@@ -18,10 +19,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <unordered_map>
-
-#include "own_side.h"
+#include <vector>
 
 namespace PeriDeal
 {
@@ -29,6 +30,135 @@ namespace PeriDeal
 
   namespace
   {
+    /** What a node counts in the value at a point, and in the gradient there. */
+    template <int dim>
+    struct Share
+    {
+      dealii::types::global_dof_index dof;
+      double                          weight;
+      dealii::Tensor<1, dim>          slope;
+    };
+
+
+    /** So many nodes, at most, make a value on one side of a crack. */
+    template <int dim>
+    constexpr unsigned int most_shares = 3 * (dim + 1);
+
+
+    /** Whether a crack lies between two points. */
+    template <int dim>
+    bool parted(const std::vector<CrackGeometry<dim>> &cracks,
+                const Point<dim>                      &a,
+                const Point<dim>                      &b)
+    {
+      return std::any_of(cracks.begin(), cracks.end(), [&](const CrackGeometry<dim> &crack) {
+        return crack.separates(a, b);
+      });
+    }
+
+
+    /** The nodes of the cells around a point that no crack parts from it, the nearest first. */
+    template <int dim>
+    std::vector<std::pair<types::global_dof_index, Point<dim>>> nodes_on_own_side(
+      const CellSearch<dim>                 &search,
+      const typename CellSearch<dim>::Cell  &cell_of_point,
+      const Point<dim>                      &point,
+      const std::vector<CrackGeometry<dim>> &cracks)
+    {
+      std::vector<typename CellSearch<dim>::Cell> cells;
+      const double                                size = cell_of_point->minimum_vertex_distance();
+      search.find({cell_of_point->bounding_box()}, 0.6 * size, cells);
+      std::map<types::global_dof_index, Point<dim>> found;
+      std::vector<types::global_dof_index> indices(cell_of_point->get_fe().n_dofs_per_cell());
+      for (const auto &cell : cells)
+        {
+          cell->get_dof_indices(indices);
+          for (const unsigned int v : cell->vertex_indices())
+            if (!parted(cracks, point, cell->vertex(v)))
+              found.emplace(indices[v], cell->vertex(v));
+        }
+      std::vector<std::pair<types::global_dof_index, Point<dim>>> nodes(found.begin(), found.end());
+      // Of equally near ones the first in space, so that it does not matter who counts them.
+      const double slack = 1e-9 * size * size;
+      std::sort(nodes.begin(), nodes.end(), [&](const auto &a, const auto &b) {
+        const double difference = a.second.distance_square(point) - b.second.distance_square(point);
+        if (std::abs(difference) > slack)
+          return difference < 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          if (a.second[d] != b.second[d])
+            return a.second[d] < b.second[d];
+        return false;
+      });
+      nodes.resize(std::min<std::size_t>(nodes.size(), most_shares<dim>));
+      return nodes;
+    }
+
+
+    /**
+     * The linear function that fits the nodes best, each by the inverse square of its distance; the
+     * nearest one alone where they do not make a linear function.
+     */
+    template <int dim>
+    std::vector<Share<dim>> fit_linear(
+      const std::vector<std::pair<types::global_dof_index, Point<dim>>> &nodes,
+      const Point<dim>                                                  &point)
+    {
+      if (nodes.empty())
+        return {};
+      double scale = 0.;
+      for (const auto &node : nodes)
+        scale = std::max(scale, node.second.distance(point));
+      using Row      = Eigen::Matrix<double, dim + 1, 1>;
+      using Square   = Eigen::Matrix<double, dim + 1, dim + 1>;
+      const auto row = [&](const Point<dim> &p) {
+        Row a;
+        a[0] = 1.;
+        for (unsigned int d = 0; d < dim; ++d)
+          a[d + 1] = (p[d] - point[d]) / scale;
+        return a;
+      };
+      const auto weight = [&](const Point<dim> &p) {
+        return 1. / (0.05 + p.distance_square(point) / (scale * scale));
+      };
+      Square normal = Square::Zero();
+      for (const auto &node : nodes)
+        normal += weight(node.second) * row(node.second) * row(node.second).transpose();
+      Eigen::FullPivLU<Square> solver(normal);
+      solver.setThreshold(1e-6);
+      if (!solver.isInvertible())
+        return {{nodes[0].first, 1., {}}};
+      const Square            inverse = solver.inverse();
+      std::vector<Share<dim>> shares;
+      for (const auto &node : nodes)
+        {
+          const Row      all = weight(node.second) * (inverse * row(node.second));
+          Tensor<1, dim> slope;
+          for (unsigned int d = 0; d < dim; ++d)
+            slope[d] = all[d + 1] / scale;
+          shares.push_back({node.first, all[0], slope});
+        }
+      return shares;
+    }
+
+
+    /**
+     * What is read at a point beside a crack: the linear function that fits the nearest nodes of
+     * the cells around, those that no crack parts from the point, each by about the inverse square
+     * of its distance. The nearest one alone where they do not make a linear function; nothing
+     * where there is none. Not collective.
+     *
+     * @param cell that holds the point
+     */
+    template <int dim>
+    std::vector<Share<dim>> fit_own_side(const CellSearch<dim>                 &search,
+                                         const typename CellSearch<dim>::Cell  &cell,
+                                         const Point<dim>                      &point,
+                                         const std::vector<CrackGeometry<dim>> &cracks)
+    {
+      return fit_linear(nodes_on_own_side(search, cell, point, cracks), point);
+    }
+
+
     /** The way to the left of the cracks that a point lies on, or nothing. */
     template <int dim>
     Tensor<1, dim> off_cracks(const Point<dim> &p, const std::vector<CrackGeometry<dim>> &cracks)
@@ -433,7 +563,5 @@ namespace PeriDeal
     return result;
   }
 
-  template class PointEvaluator<1>;
-  template class PointEvaluator<2>;
-  template class PointEvaluator<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class PointEvaluator);
 } // namespace PeriDeal

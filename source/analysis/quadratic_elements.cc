@@ -9,6 +9,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <perideal/analysis/quadratic_elements.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/parts/element_layout.h>
 
 #include <Eigen/Dense>
@@ -16,7 +17,6 @@
 #include <array>
 #include <cmath>
 
-#include "element_vectors.h"
 
 // Second derivatives of a field of bilinear elements, and what they add in the middles of edges,
 // faces and cells.
@@ -568,19 +568,6 @@ namespace PeriDeal
   }
 
 
-  template class QuadraticElements<1>;
-  template class QuadraticElements<2>;
-  template class QuadraticElements<3>;
-
-#define PERIDEAL_INSTANTIATE(dim)                              \
-  template void mark_side(const DoFHandler<dim> &,             \
-                          const Utilities::MPI::Partitioner &, \
-                          const BodyParameters<dim> &,         \
-                          const HangingNodes<dim> &,           \
-                          const std::string &,                 \
-                          Vector &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class QuadraticElements);
+  PERIDEAL_INSTANTIATE_FUNCTION(mark_side);
 } // namespace PeriDeal

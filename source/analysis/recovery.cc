@@ -7,6 +7,7 @@
 
 #include <perideal/analysis/heat_flux.h>
 #include <perideal/analysis/recovery.h>
+#include <perideal/base/instantiate.h>
 
 namespace PeriDeal
 {
@@ -61,13 +62,5 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                            \
-  template RecoveryIndicators recovery_indicators(const DoFHandler<dim> &,   \
-                                                  const Material &,          \
-                                                  const std::vector<bool> &, \
-                                                  const Vector &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(recovery_indicators);
 } // namespace PeriDeal

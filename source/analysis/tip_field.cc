@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/analysis/tip_field.h>
+#include <perideal/base/instantiate.h>
 
 #include <algorithm>
 #include <cmath>
@@ -111,6 +112,5 @@ namespace PeriDeal
   }
 
 
-  template double distance_to_parts(const Scene<2> &, const Point<2> &);
-  template double distance_to_parts(const Scene<3> &, const Point<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION_2_3(distance_to_parts);
 } // namespace PeriDeal

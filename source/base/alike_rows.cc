@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/alike_rows.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/matrix_rows.h>
 
 #include <algorithm>
@@ -450,7 +451,5 @@ namespace PeriDeal
   }
 
 
-  template class AlikeRows<1>;
-  template class AlikeRows<2>;
-  template class AlikeRows<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class AlikeRows);
 } // namespace PeriDeal

@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "duration.h"
 #include "progress_beat.h"
 
 namespace PeriDeal

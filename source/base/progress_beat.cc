@@ -15,7 +15,6 @@
 #include <ctime>
 #include <limits>
 
-#include "duration.h"
 
 namespace PeriDeal
 {

@@ -68,4 +68,8 @@ namespace PeriDeal
     Span              span;
     Clock::time_point made, last_told;
   };
+
+
+  /** readable_duration() without an allocation. */
+  void format_duration(char *text, const std::size_t size, const double seconds);
 } // namespace PeriDeal

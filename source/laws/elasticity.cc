@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/elasticity.h>
 
 #include <algorithm>
@@ -147,15 +148,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                 \
-  template SymmetricTensor<2, dim> stress<dim>(const Moduli &,                                    \
-                                               const PlaneState,                                  \
-                                               const SymmetricTensor<2, dim> &,                   \
-                                               const double);                                     \
-  template double                  von_mises<dim>(const SymmetricTensor<2, dim> &, const double); \
-  template double                  pressure<dim>(const SymmetricTensor<2, dim> &, const double);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(stress);
+  PERIDEAL_INSTANTIATE_FUNCTION(von_mises);
+  PERIDEAL_INSTANTIATE_FUNCTION(pressure);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/family_moments.h>
 
 #include <algorithm>
@@ -151,16 +152,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                              \
-  template FourthMoments<dim> fourth_moments(const Tensor<1, dim> &);                          \
-  template FourthMoments<dim> isotropic_fourth_moments<dim>();                                 \
-  template double scalar_product<dim>(const FourthMoments<dim> &, const FourthMoments<dim> &); \
-  template class MomentMatrix<dim>;                                                            \
-  template bool positive_factors_exist<dim>(const std::vector<FourthMoments<dim>> &,           \
-                                            const MomentMatrix<dim> &,                         \
-                                            const FourthMoments<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(fourth_moments);
+  PERIDEAL_INSTANTIATE_FUNCTION(isotropic_fourth_moments);
+  PERIDEAL_INSTANTIATE_FUNCTION(scalar_product);
+  PERIDEAL_INSTANTIATE_CLASS(class MomentMatrix);
+  PERIDEAL_INSTANTIATE_FUNCTION(positive_factors_exist);
 } // namespace PeriDeal

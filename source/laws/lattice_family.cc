@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/laws/kernel.h>
 #include <perideal/laws/lattice_family.h>
@@ -334,26 +335,7 @@ namespace PeriDeal
   }
 
 
-#define INSTANTIATE(dim)                                                                \
-  template std::vector<FamilyMember<dim>> lattice_family<dim>(const Tensor<1, dim> &,   \
-                                                              const double,             \
-                                                              const KernelShape,        \
-                                                              const unsigned int,       \
-                                                              const VolumeFraction,     \
-                                                              const Calibration);       \
-  template std::vector<FamilyMember<dim>> self_term_family<dim>(const Tensor<1, dim> &, \
-                                                                const double,           \
-                                                                const KernelShape,      \
-                                                                const unsigned int,     \
-                                                                const VolumeFraction,   \
-                                                                const Calibration);     \
-  template std::array<double, dim>        effective_conductivity<dim>(                  \
-    const std::vector<FamilyMember<dim>> &,                                      \
-    const Tensor<1, dim> &);
-
-  INSTANTIATE(1)
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-
-#undef INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(lattice_family);
+  PERIDEAL_INSTANTIATE_FUNCTION(self_term_family);
+  PERIDEAL_INSTANTIATE_FUNCTION(effective_conductivity);
 } // namespace PeriDeal

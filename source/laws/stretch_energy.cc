@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/stretch_energy.h>
 
 #include <cmath>
@@ -49,14 +50,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                       \
-  template struct StretchSums<dim>;                                                     \
-  template Tensor<1, dim> axis_factors(const Tensor<1, dim> &, const Tensor<1, dim> &); \
-  template double         ellipsoid_factor(const Tensor<1, dim> &,                      \
-                                           const Tensor<1, dim> &,                      \
-                                           const Tensor<1, dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(struct StretchSums);
+  PERIDEAL_INSTANTIATE_FUNCTION(axis_factors);
+  PERIDEAL_INSTANTIATE_FUNCTION(ellipsoid_factor);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/exceptions.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/gauss_rule.h>
 #include <perideal/laws/kernel.h>
 #include <perideal/laws/volume_fraction.h>
@@ -189,28 +190,6 @@ namespace PeriDeal
   }
 
 
-  template double exact_fraction<1>(const std::array<double, 1> &,
-                                    const std::array<double, 1> &,
-                                    const double);
-  template double exact_fraction<2>(const std::array<double, 2> &,
-                                    const std::array<double, 2> &,
-                                    const double);
-  template double exact_fraction<3>(const std::array<double, 3> &,
-                                    const std::array<double, 3> &,
-                                    const double);
-  template double weighted_shape<1>(const KernelShape,
-                                    const VolumeFraction,
-                                    const std::array<double, 1> &,
-                                    const std::array<double, 1> &,
-                                    const double);
-  template double weighted_shape<2>(const KernelShape,
-                                    const VolumeFraction,
-                                    const std::array<double, 2> &,
-                                    const std::array<double, 2> &,
-                                    const double);
-  template double weighted_shape<3>(const KernelShape,
-                                    const VolumeFraction,
-                                    const std::array<double, 3> &,
-                                    const std::array<double, 3> &,
-                                    const double);
+  PERIDEAL_INSTANTIATE_FUNCTION(exact_fraction);
+  PERIDEAL_INSTANTIATE_FUNCTION(weighted_shape);
 } // namespace PeriDeal

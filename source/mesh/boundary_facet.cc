@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/boundary_facet.h>
 
 #include <cmath>
@@ -189,11 +190,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                           \
-  template struct BoundaryFacet<dim>;                                                       \
-  template std::vector<BoundaryFacet<dim>> gather_boundary_facets(const DoFHandler<dim> &); \
-  template std::vector<bool>               nodes_on_other_facets(const DoFHandler<dim> &, double);
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS_2_3(struct BoundaryFacet);
+  PERIDEAL_INSTANTIATE_FUNCTION_2_3(gather_boundary_facets);
+  PERIDEAL_INSTANTIATE_FUNCTION_2_3(nodes_on_other_facets);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/geometry_info.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/cell_corners.h>
 
 #include <algorithm>
@@ -72,13 +73,5 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                          \
-  template std::vector<CellCorner<dim>> cell_corners<dim>( \
-    const DoFHandler<dim> &,                               \
-    const unsigned int,                                    \
-    const std::function<unsigned int(const types::global_dof_index)> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(cell_corners);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/cell_geometry.h>
 
 #include <algorithm>
@@ -271,17 +272,8 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                         \
-  template std::array<double, GeometryInfo<dim>::vertices_per_cell> shape_values(         \
-    const Point<dim> &);                                                                  \
-  template double volume_element(const CellCorners<dim> &, const Point<dim> &);           \
-  template bool   unit_point(const CellCorners<dim> &, const Point<dim> &, Point<dim> &); \
-  template void   add_face_crossings(const CellCorners<dim> &,                            \
-                                     const Point<dim> &,                                  \
-                                     const Point<dim> &,                                  \
-                                     std::vector<double> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(shape_values);
+  PERIDEAL_INSTANTIATE_FUNCTION(volume_element);
+  PERIDEAL_INSTANTIATE_FUNCTION(unit_point);
+  PERIDEAL_INSTANTIATE_FUNCTION(add_face_crossings);
 } // namespace PeriDeal

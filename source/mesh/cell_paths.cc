@@ -4,6 +4,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/cell_paths.h>
 
 #include <algorithm>
@@ -689,7 +690,5 @@ namespace PeriDeal
   }
 
 
-  template class CellPaths<1>;
-  template class CellPaths<2>;
-  template class CellPaths<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CellPaths);
 } // namespace PeriDeal

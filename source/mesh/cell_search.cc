@@ -3,6 +3,7 @@
 
 #include <deal.II/numerics/rtree.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/cell_search.h>
 
 #include <algorithm>
@@ -58,7 +59,5 @@ namespace PeriDeal
   }
 
 
-  template class CellSearch<1>;
-  template class CellSearch<2>;
-  template class CellSearch<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CellSearch);
 } // namespace PeriDeal

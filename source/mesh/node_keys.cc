@@ -3,6 +3,7 @@
 
 #include <deal.II/fe/fe.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/node_keys.h>
 
 #include <algorithm>
@@ -53,7 +54,5 @@ namespace PeriDeal
   }
 
 
-  template NodeKeys node_keys(const DoFHandler<1> &);
-  template NodeKeys node_keys(const DoFHandler<2> &);
-  template NodeKeys node_keys(const DoFHandler<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(node_keys);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/mesh/node_search.h>
 #include <perideal/mesh/points_within.h>
@@ -133,7 +134,5 @@ namespace PeriDeal
   }
 
 
-  template class NodeSearch<1>;
-  template class NodeSearch<2>;
-  template class NodeSearch<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class NodeSearch);
 } // namespace PeriDeal

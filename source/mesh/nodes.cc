@@ -7,6 +7,7 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/affine_constraints.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/boundary_facet.h>
 #include <perideal/mesh/mesh_builder.h>
@@ -661,21 +662,8 @@ namespace PeriDeal
   }
 
 
-  template class Nodes<1>;
-  template class Nodes<2>;
-  template class Nodes<3>;
-
-#define PERIDEAL_INSTANTIATE(dim)                                                              \
-  template void                  number_along_lattice(DoFHandler<dim> &, const Domain<dim> &); \
-  template std::vector<PartNode> nodes_of_parts(const BoundaryConditions<dim> &,               \
-                                                const std::vector<Point<dim>> &,               \
-                                                const std::vector<double> &,                   \
-                                                const MPI_Comm);                               \
-  template void                  require_areas(const BoundaryConditions<dim> &,                \
-                                               const std::vector<double> &,                    \
-                                               const MPI_Comm);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class Nodes);
+  PERIDEAL_INSTANTIATE_FUNCTION(number_along_lattice);
+  PERIDEAL_INSTANTIATE_FUNCTION(nodes_of_parts);
+  PERIDEAL_INSTANTIATE_FUNCTION(require_areas);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/part_faces.h>
 
 #include <cmath>
@@ -214,19 +215,6 @@ namespace PeriDeal
   }
 
 
-  template class RimFactors<1>;
-  template class RimFactors<2>;
-  template class RimFactors<3>;
-  template FacePoints<1> points_in_part(const CellVertices<1> &,
-                                        const unsigned int,
-                                        const Part &,
-                                        const unsigned int);
-  template FacePoints<2> points_in_part(const CellVertices<2> &,
-                                        const unsigned int,
-                                        const Part &,
-                                        const unsigned int);
-  template FacePoints<3> points_in_part(const CellVertices<3> &,
-                                        const unsigned int,
-                                        const Part &,
-                                        const unsigned int);
+  PERIDEAL_INSTANTIATE_CLASS(class RimFactors);
+  PERIDEAL_INSTANTIATE_FUNCTION(points_in_part);
 } // namespace PeriDeal

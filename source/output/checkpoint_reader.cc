@@ -16,7 +16,6 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "checkpoint_format.h"
 #include "checksum.h"
 #include "gather_in_turn.h"
 #include "hdf5_file.h"

@@ -15,7 +15,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "checkpoint_format.h"
 #include "checksum.h"
 #include "gather_in_turn.h"
 #include "hdf5_file.h"

@@ -1,24 +1,32 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 #include <deal.II/dofs/dof_tools.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/process_end.h>
 #include <perideal/output/field_writer.h>
 
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "exchange_of_first.h"
 #include "gather_in_turn.h"
 #include "hdf5_file.h"
-#include "tensor_array.h"
 
 namespace PeriDeal
 {
@@ -26,6 +34,63 @@ namespace PeriDeal
 
   namespace
   {
+    const std::string stem = "stress_"; // of the one tensor that models write
+
+
+    /** What VTU files of ours call the tensor of the components `stress_xx`, ... */
+    std::string name_of_tensor(const std::vector<std::string> &names)
+    {
+      return std::find(names.begin(), names.end(), stem + "xx") == names.end() ? "" : "stress";
+    }
+
+
+    /**
+     * For each of the nine components of the tensor, row by row, the position of its field among
+     * the names; -1 where there is none, which stands for 0.
+     */
+    std::vector<int> components_of_tensor(const std::vector<std::string> &names)
+    {
+      std::vector<int> places;
+      for (unsigned int a = 0; a < 3; ++a)
+        for (unsigned int b = 0; b < 3; ++b)
+          {
+            const std::string component = stem + "xyz"[std::min(a, b)] + "xyz"[std::max(a, b)];
+            const auto        at        = std::find(names.begin(), names.end(), component);
+            places.push_back(at == names.end() ? -1 : static_cast<int>(at - names.begin()));
+          }
+      return places;
+    }
+
+
+    /** A `DataArray` of a VTU file with nine numbers a point, compressed as deal.II's are. */
+    std::string tensor_array(const std::string &name, const std::vector<float> &values)
+    {
+      // One block: number of blocks, size of a block, size of the last one, compressed size.
+      const std::size_t size = values.size() * sizeof(float);
+      AssertThrow(size < (std::size_t(1) << 32),
+                  dealii::ExcMessage("a process has too many cells for a block of a VTU file"));
+      uLongf                     compressed = compressBound(size);
+      std::vector<unsigned char> data(compressed);
+      const int                  status = compress2(data.data(),
+                                   &compressed,
+                                   reinterpret_cast<const Bytef *>(values.data()),
+                                   size,
+                                   Z_BEST_SPEED);
+      AssertThrow(status == Z_OK, dealii::ExcMessage("zlib could not compress a field"));
+      data.resize(compressed);
+      const std::array<std::uint32_t, 4> head{{1u,
+                                               static_cast<std::uint32_t>(size),
+                                               static_cast<std::uint32_t>(size),
+                                               static_cast<std::uint32_t>(compressed)}};
+      std::vector<unsigned char>         head_bytes(sizeof head);
+      std::memcpy(head_bytes.data(), head.data(), sizeof head);
+      return "    <DataArray type=\"Float32\" Name=\"" + name +
+             "\" NumberOfComponents=\"9\" format=\"binary\">\n" +
+             dealii::Utilities::encode_base64(head_bytes) + dealii::Utilities::encode_base64(data) +
+             "\n    </DataArray>\n";
+    }
+
+
     /** The default compression takes ten times as long for files that are a tenth smaller. */
     DataOutBase::VtkFlags quick_flags()
     {
@@ -435,7 +500,5 @@ namespace PeriDeal
   }
 
 
-  template class FieldWriter<1>;
-  template class FieldWriter<2>;
-  template class FieldWriter<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FieldWriter);
 } // namespace PeriDeal

@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <perideal/analysis/crack_advance.h>
 #include <perideal/analysis/crack_surface.h>
 #include <perideal/output/crack_writer.h>
 #include <perideal/problems/run_context.h>

@@ -7,7 +7,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <perideal/scene/lists.h>
-#include <perideal/solvers/round_off.h>
+#include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <set>
 
-#include "msh_error.h"
-
 namespace PeriDeal
 {
   namespace
@@ -31,6 +29,8 @@ namespace PeriDeal
     /** Nodes closer than this, in terms of the extent of the mesh, are taken for one. */
     constexpr double smallest_length = 1e-12;
 
+
+    constexpr const char *names[4] = {"point", "line", "quadrilateral", "hexahedron"};
 
     constexpr unsigned int invalid = static_cast<unsigned int>(-1);
 
@@ -80,19 +80,25 @@ namespace PeriDeal
         : mesh(mesh)
         , name(name)
         , dim(dim)
+        , cell_name(names[dim])
+        , face_name(dim == 3 ? "face" :
+                    dim == 2 ? "edge" :
+                               "end")
       {}
 
       void check()
       {
-        check_plane();
-        for (unsigned int d = 0; d < dim; ++d)
+        Vector3 size;
+        for (unsigned int d = 0; d < 3; ++d)
           {
             const auto ends =
               std::minmax_element(mesh.points.begin(),
                                   mesh.points.end(),
                                   [d](const Vector3 &a, const Vector3 &b) { return a[d] < b[d]; });
-            extent = std::max(extent, (*ends.second)[d] - (*ends.first)[d]);
+            size[d] = (*ends.second)[d] - (*ends.first)[d];
           }
+        check_plane(size);
+        extent = *std::max_element(size.begin(), size.begin() + dim);
         for (const MshElement &cell : mesh.cells)
           turned.push_back(orientation(cell) < 0);
         check_for_twins();
@@ -102,16 +108,6 @@ namespace PeriDeal
       }
 
     private:
-      std::string cell_name() const
-      {
-        return dim == 3 ? "hexahedron" : dim == 2 ? "quadrilateral" : "line";
-      }
-
-      std::string face_name() const
-      {
-        return dim == 3 ? "face" : dim == 2 ? "edge" : "end";
-      }
-
       std::string text_of(const MshElement &element) const
       {
         return std::to_string(element.number) + " (line " + std::to_string(element.line) + ")";
@@ -184,7 +180,7 @@ namespace PeriDeal
                         cell.line,
                         "found node " + std::to_string(mesh.numbers[cell.nodes[a]]) +
                           " twice in element " + std::to_string(cell.number) + ", expected " +
-                          std::to_string(cell.n) + " different nodes of a " + cell_name() + ".");
+                          std::to_string(cell.n) + " different nodes of a " + cell_name + ".");
         int sign = 0;
         for (unsigned int corner = 0; corner < cell.n; ++corner)
           {
@@ -195,8 +191,8 @@ namespace PeriDeal
             if (own == 0 || own == -sign)
               msh_error(name,
                         cell.line,
-                        "the " + cell_name() + " " + std::to_string(cell.number) +
-                          " of the nodes " + nodes_of(cell) +
+                        "the " + cell_name + " " + std::to_string(cell.number) + " of the nodes " +
+                          nodes_of(cell) +
                           " is folded, flat or has its nodes in a wrong order: found " +
                           (own == 0 ? "no angle" : "an angle that opens to the other side") +
                           " at its node " + std::to_string(mesh.numbers[cell.nodes[corner]]) +
@@ -206,7 +202,7 @@ namespace PeriDeal
         if (sign == 0)
           msh_error(name,
                     cell.line,
-                    "the " + cell_name() + " " + std::to_string(cell.number) + " of the nodes " +
+                    "the " + cell_name + " " + std::to_string(cell.number) + " of the nodes " +
                       nodes_of(cell) + " is flat, expected one with an area.");
         return sign;
       }
@@ -227,7 +223,7 @@ namespace PeriDeal
                                &two = mesh.cells[sorted[k].second];
               msh_error(name,
                         two.line,
-                        "the " + cell_name() + " " + std::to_string(two.number) +
+                        "the " + cell_name + " " + std::to_string(two.number) +
                           " has the same nodes as number " + text_of(one) +
                           ", expected each once (is a surface or volume in two physical groups?).");
             }
@@ -264,14 +260,14 @@ namespace PeriDeal
             if (k > 1 && faces[k - 2].nodes == two.nodes)
               msh_error(name,
                         cell.line,
-                        "found three cells with the same " + face_name() + ", " +
+                        "found three cells with the same " + face_name + ", " +
                           text_of(mesh.cells[faces[k - 2].element]) + ", " + text_of(other) +
                           " and " + text_of(cell) + ", expected two at most.");
             if (one.positive == two.positive || one.across != two.across)
               msh_error(name,
                         cell.line,
                         "the cells " + text_of(other) + " and " + text_of(cell) +
-                          (dim == 3 ? " share a " : " share an ") + face_name() +
+                          (dim == 3 ? " share a " : " share an ") + face_name +
                           (one.across != two.across ? " whose nodes they take in different orders" :
                                                       " and lie on the same side of it") +
                           ": found a folded mesh, expected that cells do not overlap.");
@@ -291,10 +287,7 @@ namespace PeriDeal
         for (std::size_t k = 0; k < named.size(); ++k)
           {
             const MshElement &side  = mesh.sides[named[k].element];
-            const std::string title = "the " +
-                                      std::string(dim == 3 ? "quadrilateral " :
-                                                  dim == 2 ? "line " :
-                                                             "point ") +
+            const std::string title = "the " + std::string(names[dim - 1]) + " " +
                                       std::to_string(side.number) + " of the nodes " +
                                       nodes_of(side);
             const auto [first, last] =
@@ -305,7 +298,7 @@ namespace PeriDeal
             if (dim > 1 && (first == last || (dim == 3 && first->across != named[k].across)))
               msh_error(name,
                         side.line,
-                        title + " is found to be no " + face_name() + " of a " + cell_name() +
+                        title + " is found to be no " + face_name + " of a " + cell_name +
                           ", expected a piece of a side of the body.");
             if (dim > 1 && last - first == 2)
               inside.insert(named[k].element); // between two materials
@@ -327,17 +320,8 @@ namespace PeriDeal
       }
 
       /** A mesh of two dimensions lies in the plane of x and y. */
-      void check_plane() const
+      void check_plane(const Vector3 &size) const
       {
-        std::array<double, 3> size{};
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            const auto ends =
-              std::minmax_element(mesh.points.begin(),
-                                  mesh.points.end(),
-                                  [d](const Vector3 &a, const Vector3 &b) { return a[d] < b[d]; });
-            size[d] = (*ends.second)[d] - (*ends.first)[d];
-          }
         for (unsigned int d = 0; d < dim; ++d)
           if (dim == 2 && size[d] <= smallest_length * size[2])
             msh_error(name,
@@ -350,6 +334,7 @@ namespace PeriDeal
       MshMesh           &mesh;
       const std::string &name;
       const unsigned int dim;
+      const std::string  cell_name, face_name;
       double             extent = 0.;
       std::vector<bool>  turned; // by cell
       std::vector<Face>  faces;  // sorted

@@ -3,16 +3,23 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/mesh_builder.h>
 #include <perideal/problems/problem_factory.h>
+#include <perideal/problems/run_context.h>
+#include <perideal/scene/lists.h>
+#include <perideal/scene/scene_variant.h>
 #include <perideal/simulation/estimate.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <vector>
 
-#include "scene_sample.h"
+#include "model_comparison.h"
 
 namespace PeriDeal
 {
@@ -20,6 +27,147 @@ namespace PeriDeal
 
   namespace
   {
+    /** What a scene takes on a lattice that is coarse enough to be built in a second. */
+    struct Sample
+    {
+      double                     cells = 0., nodes = 0.; // of the lattice, vertices
+      double                     memory = 0., time_to_build = 0.;
+      std::vector<ModelEstimate> models;
+    };
+
+
+    /** Cells of a lattice with @p more = 0, its vertices with 1. */
+    template <int dim>
+    double number_of(const std::array<unsigned int, dim> &cells, const unsigned int more)
+    {
+      double result = 1.;
+      for (const unsigned int k : cells)
+        result *= static_cast<double>(k) + more;
+      return result;
+    }
+
+
+    /**
+     * Numbers of cells that are those of the scene divided by a whole number, if possible without
+     * remainder, with about so many nodes.
+     */
+    template <int dim>
+    std::array<unsigned int, dim> coarse_cells(const std::array<unsigned int, dim> &cells,
+                                               const double                         nodes)
+    {
+      const auto divide = [&](const unsigned int q) {
+        std::array<unsigned int, dim> n = cells;
+        for (unsigned int &k : n)
+          k = std::max(2u, (k + q / 2) / q);
+        return n;
+      };
+      const auto ideal =
+        static_cast<unsigned int>(std::ceil(std::pow(number_of<dim>(cells, 1) / nodes, 1. / dim)));
+      // Not so far from the ideal that lattices of a quarter of the nodes have the same divisor.
+      for (unsigned int q = std::max(2u, ideal); 2 * q < 3 * ideal; ++q)
+        if (std::all_of(cells.begin(), cells.end(), [q](const unsigned int k) {
+              return k % q == 0;
+            }))
+          return divide(q);
+      return divide(std::max(2u, ideal));
+    }
+
+
+    /**
+     * The scene on a coarser lattice with the same horizon in terms of its spacing, without points
+     * of output. Throws UserError if it cannot be, for instance since cracks do not lie on its
+     * faces.
+     */
+    template <int dim>
+    std::shared_ptr<Scene<dim>> coarse_scene(const Scene<dim>                    &scene,
+                                             const std::array<unsigned int, dim> &cells)
+    {
+      std::string text;
+      double      smallest = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          text += (d > 0 ? ", " : "") + std::to_string(cells[d]);
+          const double h = (scene.domain.upper[d] - scene.domain.lower[d]) / cells[d];
+          smallest       = d == 0 ? h : std::min(smallest, h);
+        }
+      std::vector<Setting> settings{{"Domain/Node spacing", ""},
+                                    {"Domain/Cells", text},
+                                    {"Cracks/Nodes on cracks", "left"}, // these very cells
+                                    {"Output/Probes", ""},
+                                    {"Output/Line", ""},
+                                    {"Output/Grid", ""}};
+      if (scene.peridynamics.horizon > 0.)
+        {
+          const Tensor<1, dim> h   = scene.domain.spacing();
+          double               own = h[0];
+          for (unsigned int d = 1; d < dim; ++d)
+            own = std::min(own, h[d]);
+          settings.emplace_back("Peridynamics/Horizon",
+                                number_text(scene.horizon() / own * smallest));
+        }
+      const std::shared_ptr<Scene<dim>> coarse = scene_variant(scene, settings);
+      problem_factory(*coarse).require_computable(*coarse);
+      return coarse;
+    }
+
+
+    template <int dim>
+    void take_problems(const Scene<dim>                          &scene,
+                       const std::shared_ptr<Triangulation<dim>> &mesh,
+                       Sample                                    &sample)
+    {
+      ResultRecord     record;
+      Progress         quiet(mesh->get_communicator(), true);
+      const RunContext context{quiet, record, {}};
+      Models<dim>      models;
+      for (unsigned int k = 0; k < sample.models.size(); ++k)
+        {
+          const double start = processor_seconds();
+          models.push_back(std::make_unique<Model<dim>>(scene.general.models[k], *mesh));
+          models.back()->problem      = problem_factory(scene).make_problem(*models.back(), scene);
+          const Problem<dim> &problem = *models.back()->problem;
+          ModelEstimate      &model   = sample.models[k];
+          const OperatorSize  size    = problem.op().size();
+          model.unknowns              = static_cast<double>(size.unknowns);
+          model.bonds                 = static_cast<double>(size.bonds);
+          sample.time_to_build += processor_seconds() - start;
+          model.time_of_application = time_of_application(problem.op());
+        }
+      for (unsigned int k = 0; k < models.size(); ++k)
+        {
+          models[k]->problem->take_sample(context, sample.models[k]);
+          sample.models[k].components = components_written(*models[k]->problem, models.size());
+        }
+    }
+
+
+    /** Build the scene, and solve what is linear, to see what that takes. Throws UserError.
+     * Collective. */
+    template <int dim>
+    Sample take_sample(const Scene<dim> &scene, const MPI_Comm communicator)
+    {
+      Sample sample;
+      sample.nodes        = number_of<dim>(scene.domain.cells, 1);
+      const bool   known  = forget_peak_memory();
+      const double before = resident_memory();
+      for (const ModelKind model : scene.general.models)
+        sample.models.push_back({to_string(model)});
+      std::vector<std::string>                  notes;
+      const double                              start = processor_seconds();
+      const std::shared_ptr<Triangulation<dim>> mesh  = build_mesh(scene, communicator, notes);
+      sample.cells         = static_cast<double>(mesh->n_global_active_cells());
+      sample.time_to_build = processor_seconds() - start;
+      take_problems(scene, mesh, sample);
+      const double own = known ? PeriDeal::peak_memory() - before : 0.;
+      sample.memory    = Utilities::MPI::sum(own, communicator);
+      for (ModelEstimate &model : sample.models) // to be the same on all processes
+        for (double *const time : {&model.time_of_application, &model.time_of_solution})
+          *time = Utilities::MPI::max(*time, communicator);
+      sample.time_to_build = Utilities::MPI::max(sample.time_to_build, communicator);
+      return sample;
+    }
+
+
     // Measured on scenes of all kinds: bytes that a node takes at least in the mesh and in the
     // vectors of a model, and when fields are written.
     constexpr double bytes_of_node = 400.;
@@ -418,26 +566,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                     \
-  template OutputEstimate           estimate_output(const Scene<dim> &,               \
-                                                    const double,                     \
-                                                    const std::vector<double> &,      \
-                                                    const unsigned int);              \
-  template std::vector<std::string> describe_costs(const Scene<dim> &,                \
-                                                   const double,                      \
-                                                   const double,                      \
-                                                   const double,                      \
-                                                   const std::vector<double> &,       \
-                                                   const MPI_Comm);                   \
-  template RunEstimate              estimate_run(const Scene<dim> &, const MPI_Comm); \
-  template ModelEstimate            estimate_model(const Scene<dim> &,                \
-                                                   const std::string &,               \
-                                                   const MPI_Comm,                    \
-                                                   double &);                         \
-  template bool                     is_large(const Scene<dim> &, const MPI_Comm);     \
-  template void                     require_memory(const Scene<dim> &, const MPI_Comm);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(estimate_output);
+  PERIDEAL_INSTANTIATE_FUNCTION(describe_costs);
+  PERIDEAL_INSTANTIATE_FUNCTION(estimate_run);
+  PERIDEAL_INSTANTIATE_FUNCTION(estimate_model);
+  PERIDEAL_INSTANTIATE_FUNCTION(is_large);
+  PERIDEAL_INSTANTIATE_FUNCTION(require_memory);
 } // namespace PeriDeal

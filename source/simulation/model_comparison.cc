@@ -7,6 +7,7 @@
 #include <deal.II/dofs/dof_tools.h>
 
 #include <perideal/analysis/comparison.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/scene.h>
 
 #include <algorithm>
@@ -139,16 +140,8 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template void                compare_models(const std::vector<const Problem<dim> *> &,        \
-                                              const Domain<dim> &,                              \
-                                              const double,                                     \
-                                              ResultRecord &);                                  \
-  template std::vector<Vector> difference_of_models(const std::vector<const Problem<dim> *> &); \
-  template bool                shows_difference(const Problem<dim> &);                          \
-  template double              components_written(const Problem<dim> &, const std::size_t);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(compare_models);
+  PERIDEAL_INSTANTIATE_FUNCTION(difference_of_models);
+  PERIDEAL_INSTANTIATE_FUNCTION(shows_difference);
+  PERIDEAL_INSTANTIATE_FUNCTION(components_written);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/diverged.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/process_end.h>
 #include <perideal/simulation/run_files.h>
 
@@ -256,7 +257,8 @@ namespace PeriDeal
   }
 
 
-  template RunFiles::RunFiles(const Scene<1> &, const SceneText &, const MPI_Comm, const RunMode);
-  template RunFiles::RunFiles(const Scene<2> &, const SceneText &, const MPI_Comm, const RunMode);
-  template RunFiles::RunFiles(const Scene<3> &, const SceneText &, const MPI_Comm, const RunMode);
+#define PERIDEAL_TEMPLATES(dim) \
+  template RunFiles::RunFiles(const Scene<dim> &, const SceneText &, const MPI_Comm, const RunMode);
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

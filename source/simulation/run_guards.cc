@@ -3,6 +3,7 @@
 
 #include "run_guards.h"
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
 
 #include <cmath>
@@ -174,7 +175,5 @@ namespace PeriDeal
   }
 
 
-  template class RunGuards<1>;
-  template class RunGuards<2>;
-  template class RunGuards<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class RunGuards);
 } // namespace PeriDeal

@@ -3,6 +3,8 @@
 
 #include "run_output.h"
 
+#include <perideal/base/instantiate.h>
+
 #include <cmath>
 #include <utility>
 
@@ -234,7 +236,5 @@ namespace PeriDeal
   }
 
 
-  template class RunOutput<1>;
-  template class RunOutput<2>;
-  template class RunOutput<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class RunOutput);
 } // namespace PeriDeal

@@ -3,10 +3,10 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
-#include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/problems/check_sides.h>
 #include <perideal/problems/computable.h>
@@ -822,7 +822,5 @@ namespace PeriDeal
   }
 
 
-  template class Simulation<1>;
-  template class Simulation<2>;
-  template class Simulation<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class Simulation);
 } // namespace PeriDeal

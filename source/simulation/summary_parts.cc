@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/problems/places.h>
 #include <perideal/problems/problem_factory.h>
 
@@ -267,22 +268,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                           \
-  template json describe_scene(const Scene<dim> &,                                          \
-                               const SceneText &,                                           \
-                               const Triangulation<dim> &,                                  \
-                               const MPI_Comm);                                             \
-  template json describe_start(const Scene<dim> &, const SceneText &, const MPI_Comm);      \
-  template void write_image_as_read(const Scene<dim> &, ResultFolder &);                    \
-  template void describe_run(const Scene<dim> &,                                            \
-                             const Triangulation<dim> &,                                    \
-                             const ResultRecord &,                                          \
-                             const Timings &,                                               \
-                             json &);                                                       \
-  template json describe_problem(const Problem<dim> &, const json &, const ResultRecord &); \
-  template void say_size(const Problem<dim> &, const Progress &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(describe_scene);
+  PERIDEAL_INSTANTIATE_FUNCTION(describe_start);
+  PERIDEAL_INSTANTIATE_FUNCTION(write_image_as_read);
+  PERIDEAL_INSTANTIATE_FUNCTION(describe_run);
+  PERIDEAL_INSTANTIATE_FUNCTION(describe_problem);
+  PERIDEAL_INSTANTIATE_FUNCTION(say_size);
 } // namespace PeriDeal

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/solvers/round_off.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/solvers/preconditioner.h>
-#include <perideal/solvers/round_off.h>
+#include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>

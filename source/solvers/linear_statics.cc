@@ -5,7 +5,6 @@
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
-#include <perideal/solvers/round_off.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/motion_stepper.h>
-#include <perideal/solvers/round_off.h>
+#include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
 #include <cmath>

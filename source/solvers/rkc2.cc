@@ -6,7 +6,6 @@
 #include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/heat_steps.h>
-#include <perideal/solvers/step_bounds.h>
 #include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
 
@@ -14,7 +13,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "rkc_coefficients.h"
 
 namespace PeriDeal
 {

@@ -4,7 +4,7 @@
 #include <perideal/base/diverged.h>
 #include <perideal/base/step_break.h>
 #include <perideal/base/user_error.h>
-#include <perideal/solvers/step_bounds.h>
+#include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
 
 #include <functional>

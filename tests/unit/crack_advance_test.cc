@@ -5,7 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/analysis/crack_advance.h>
+#include <perideal/analysis/crack_surface.h>
 
 #include <gtest/gtest.h>
 

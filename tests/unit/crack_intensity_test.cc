@@ -4,7 +4,7 @@
 // Integrals over rings about ends of cracks, with fields that are known, and what families of
 // nodes make of fields.
 
-#include <perideal/analysis/family_fit.h>
+#include <perideal/analysis/bond_intensities.h>
 #include <perideal/analysis/stress_intensity.h>
 #include <perideal/laws/elasticity.h>
 

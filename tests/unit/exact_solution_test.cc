@@ -6,7 +6,6 @@
 
 #include <perideal/analysis/decay_rate.h>
 #include <perideal/analysis/exact_solution.h>
-#include <perideal/analysis/heat_series.h>
 #include <perideal/base/user_error.h>
 #include <perideal/laws/gauss_rule.h>
 #include <perideal/laws/kernel.h>

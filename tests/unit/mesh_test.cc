@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/mesh/crack_faces.h>
+#include <perideal/mesh/mesh_builder.h>
 
 #include <set>
 

@@ -9,7 +9,6 @@
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/lac/full_matrix.h>
 
-#include <perideal/mesh/material_ids.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/operators/diffusion/bond_operator.h>
 #include <perideal/operators/diffusion/fem_operator.h>

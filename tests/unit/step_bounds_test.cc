@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/solvers/step_bounds.h>
+#include <perideal/solvers/step_tools.h>
 #include <perideal/solvers/stepper.h>
 
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <string>
@@ -177,4 +178,13 @@ namespace PeriDeal
    * a message: "is cut short"; empty if it is one. Reads all of it. Not collective.
    */
   std::string fault_of_checkpoint(const std::string &name);
+
+
+  /** What writing and reading of checkpoints agree on; checkpoint_file.h says all. */
+  namespace CheckpointFormat
+  {
+    constexpr std::size_t head_size = 512;
+    constexpr const char *title     = "PeriDeal checkpoint ";
+    constexpr unsigned    number    = 2;
+  } // namespace CheckpointFormat
 } // namespace PeriDeal

@@ -36,6 +36,11 @@ namespace PeriDeal
   };
 
 
+  /** Throw the UserError about a line of a mesh file. */
+  [[noreturn]] void msh_error(const std::string &name,
+                              const unsigned int line,
+                              const std::string &what);
+
   /**
    * Read a Gmsh file of the versions 2 to 2.2, 4.0 and 4.1, as text; 2.2 and 4.1 also binary.
    * Comments between sections are passed over, groups of one dimension with one name are one, nodes
@@ -47,12 +52,6 @@ namespace PeriDeal
    * found and what is expected. Not collective.
    */
   MshMesh parse_msh(const std::string &text, const std::string &name, const unsigned int dim);
-
-  /**
-   * The same file as text, if it is binary; else nothing. Throws UserError: a version that is read
-   * as text only, an end too soon. Not collective.
-   */
-  std::string text_of_binary_msh(const std::string &bytes, const std::string &name);
 
   /** A mesh as text, version 2.2, as deal.II reads it. Not collective. */
   std::string text_of_msh(const MshMesh &mesh, const unsigned int dim);

@@ -8,7 +8,6 @@
 #include <perideal/analysis/exact_solution.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
-#include <perideal/mesh/mesh_history.h>
 #include <perideal/output/result_folder.h>
 #include <perideal/problems/model.h>
 #include <perideal/scene/scene.h>
