@@ -4,7 +4,6 @@
 
     elastic_solvers.py statics   the solvers agree; iterations against L/delta (fine_statics: up to 64)
     elastic_solvers.py waves     wave speed, the exact dispersion of the lattice, orders in time, energies
-    elastic_solvers.py ranks     equal results on 1, 2 and 4 processes
     elastic_solvers.py round_off what round-off allows is enough, in any units
 """
 

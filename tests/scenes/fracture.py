@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Bonds that break: strength against Griffith, energies, motion, numbers of processes.
+"""Bonds that break: strength against Griffith, energies, motion.
 
     fracture.py plate | beside | cantilever | block | bend | mesh | motion | steps | symmetry | oblique | scatter
     fracture.py fine_plate | fine_block | fine_motion      the scenes on their own lattices; the others take one of half the cells a side
