@@ -31,8 +31,8 @@ import motion
 import parts
 import slender_cracks
 import thermal_stress
-from scene_test import BC, COUPLED, FE, PD, QUIET, check, finish, print_table, run_scene, scene_text, write_file
-from scene_texts import mesh_text
+from scene_test import BC, COUPLED, FE, PD, QUIET, check, finish, print_table, run_scene, scene_text
+from scene_texts import grid_mesh
 
 PLATE = scene_text("""
 Dimension = 2
@@ -160,21 +160,12 @@ def bodies():
 
 
 def mesh_file(n=9):
-    """A Gmsh file of n x n distorted quadrilaterals on the unit square; boundary ids 1 left, 2 right, 3 bottom, 4 top."""
+    """The unit square of n x n distorted quadrilaterals."""
     def place(i, j):
         x, y = i / n, j / n
         bump = 0.3 / n * (16 * x * (1 - x) * y * (1 - y))
         return x + bump * ((7 * i + 3 * j) % 5 - 2) / 2, y + bump * ((3 * i + 5 * j) % 7 - 3) / 3
-    node = [[1 + i + (n + 1) * j for j in range(n + 1)] for i in range(n + 1)]
-    elements = []
-    for k in range(n):
-        elements += [f"1 2 1 1 {node[0][k]} {node[0][k + 1]}", f"1 2 2 2 {node[n][k]} {node[n][k + 1]}",
-                     f"1 2 3 3 {node[k][0]} {node[k + 1][0]}", f"1 2 4 4 {node[k][n]} {node[k + 1][n]}"]
-    for j in range(n):
-        for i in range(n):
-            elements.append(f"3 2 9 9 {node[i][j]} {node[i + 1][j]} {node[i + 1][j + 1]} {node[i][j + 1]}")
-    nodes = ["%.16g %.16g" % place(i, j) for j in range(n + 1) for i in range(n + 1)]
-    return write_file("distorted.msh", mesh_text(nodes, elements))
+    return grid_mesh((n, n), place)
 
 
 def others():
