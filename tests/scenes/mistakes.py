@@ -44,6 +44,8 @@ ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/P
            "Boundary conditions/Displacement": "left: 0, 0"}
 PARTS, DIRICHLET = "Boundary conditions/Parts", "Boundary conditions/Dirichlet"
 HOT = {DIRICHLET: "bottom: 0; a: 1"}
+CUT_OFF = {**ELASTIC, "Boundary conditions/Displacement": "bottom: 0, 0", "Boundary conditions/Traction": "right: if(y > 0.6, 1, 0), 0",
+           "Cracks/Segments": "-1, 0.52 ; 2, 0.52"}
 MOTION = {**ELASTIC, "Elasticity/Solver": "dynamics"}
 BRITTLE = {**ELASTIC, "Models": "peridynamics", "Material/Fracture energy": "1"}
 
@@ -110,6 +112,21 @@ def scene_mistakes(folder):
          ["'Boundary treatment'", "sides of a box"]),
     ]
     late = [
+        ("zone without a node", {"Models": "coupled", "Coupling/Zone": "x - 5"}, ["'Zone'", "no node"]),
+        *[(f"part cut off, {model}", {**CUT_OFF, "Models": model}, ["holds a part", "it has no equilibrium", "one of them at (", "Cracks", "'Displacement'"])
+          for model in ("finite elements", "peridynamics", "coupled")],
+        ("part on a hinge", {**CUT_OFF, "Boundary conditions/Parts": "pin: point 0, 1", "Boundary conditions/Displacement": "bottom: 0, 0; pin: 0, 0"},
+         ["holds a part", "it has no equilibrium"]),
+        ("step of verlet above the limit", {**MOTION, "Time/Time step": "0.1", "Time/End time": "1"}, ["'Time step'", "is 0.1,", "stable up to", "newmark"]),
+        ("too few iterations", {**ELASTIC, "Boundary conditions/Traction": "right: 1, 0", "Elasticity/Solver": "dynamic relaxation",
+                                "Solver/Maximum iterations": "20"}, ["'Solver = dynamic relaxation'", "20 iterations", "'Maximum iterations'"]),
+        ("nan as initial value", {"Initial and source/Initial value": "log(x - 0.5)"},
+         ["'Initial value'", "is not finite"]),
+        ("nan as source", {"Initial and source/Source": "1/(x - x)"}, ["'Source'", "is not finite"]),
+        ("family without energy", {"Cracks/Segments": "-1,0.49 ; 2,0.49 ; -1,0.51 ; 2,0.51", "Domain/Cells": "10, 10",
+                                   "Models": "peridynamics", "Peridynamics/Surface correction": "energy"},
+         ["'Surface correction = energy'", "no bond left", "in y"]),
+        ("unknown exact solution", {"Reference/Solution": "bobaru 2013 table 1"}, ["'Solution'", "'Reference'"]),
         ("part that is empty", {PARTS: "a: top if x > 3", **HOT}, ["'Parts'", "part 'a'", "nowhere on the side 'top'"]),
         ("region without a node", {PARTS: "a: region (x - 0.54)^2 + (y - 0.54)^2 < 1e-4", **HOT}, ["'Parts'", "part 'a'", "no node", "'point X, Y'"]),
         ("part between nodes", {PARTS: "a: left if abs(y - 0.54) < 0.02", **HOT}, ["'Dirichlet'", "'a'", "holds no node", "'point X, Y'"]),

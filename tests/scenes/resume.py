@@ -304,7 +304,7 @@ def long_enough(scene, settings):
     for attempt in range(6):
         folder, start = new_folder(), time.monotonic()
         check(run(scene, folder, settings).returncode == 0, scene)
-        if time.monotonic() - start > 5 or attempt == 5:
+        if time.monotonic() - start > 6 or attempt == 5:
             return settings, folder
         settings = {**settings, "Time/End time": f"{2 * float(settings['Time/End time']):g}"}
 
