@@ -4,7 +4,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
 #include <perideal/problems/diffusion_problem.h>
-#include <perideal/scene/with_formulas.h>
+#include <perideal/scene/expression.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
 

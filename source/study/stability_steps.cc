@@ -4,7 +4,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
 #include <perideal/problems/solid_problem.h>
-#include <perideal/scene/with_formulas.h>
+#include <perideal/scene/expression.h>
 #include <perideal/solvers/step_bounds.h>
 
 #include <algorithm>

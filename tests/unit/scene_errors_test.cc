@@ -12,47 +12,30 @@ namespace PeriDeal
   TEST(Scenes, domain_errors)
   {
     const std::string s = "Domain";
-    expect_fault(fault(s, "Shape = boxx"), s, "Shape", {"a.prm:3: ", "Did you mean 'box'?"});
-    expect_fault(fault(s, "Nodes = centers"), s, "Nodes", {"vertices, cell centers"});
-    expect_fault(fault(s, "Cells = 0, 3"), s, "Cells", {"at least one cell"});
-    expect_fault(fault(s, "Cells = 3"), s, "Cells", {"needs 2 numbers, found 1"});
-    expect_fault(fault(s, "Cells = -3, 3"), s, "Cells", {"'-3'", "whole number"});
-    expect_fault(fault(s, "Cells = 12e, 3"), s, "Cells", {"'12e' is not a number"});
-    expect_fault(fault(s, "Lower corner = 0, 0, 0"), s, "Lower corner", {"2 coordinates, found 3"});
-    expect_fault(fault(s, "Lower corner = abc, 0"), s, "Lower corner", {"'abc' is not a number"});
-    expect_fault(fault(s, "Lower corner = 0, 1"),
-                 s,
-                 "Upper corner",
-                 {"coordinate 2", "Lower corner"});
-    expect_fault(fault(s, "Hole radius = 12e"), s, "Hole radius", {"'12e' is not a number"});
-    expect_fault(fault(s, "Shape = plate with hole & Hole radius = 0"),
-                 s,
-                 "Hole radius",
-                 {"greater than 0"});
-    expect_fault(fault(s, "Shape = plate with hole & Hole center = 2, 0"),
-                 s,
-                 "Hole center",
-                 {"outside the body"});
+    expect_faults(s,
+                  {{"Shape = boxx", {"a.prm:3: ", "Did you mean 'box'?"}},
+                   {"Nodes = centers", {"vertices, cell centers"}},
+                   {"Cells = 0, 3", {"at least one cell"}},
+                   {"Cells = 3", {"needs 2 numbers, found 1"}},
+                   {"Cells = -3, 3", {"'-3'", "whole number"}},
+                   {"Cells = 12e, 3", {"'12e' is not a number"}},
+                   {"Lower corner = 0, 0, 0", {"2 coordinates, found 3"}},
+                   {"Lower corner = abc, 0", {"'abc' is not a number"}},
+                   {"Lower corner = 0, 1", {"coordinate 2", "Lower corner"}, "Upper corner"},
+                   {"Hole radius = 12e", {"'12e' is not a number"}},
+                   {"Shape = plate with hole & Hole radius = 0", {"greater than 0"}},
+                   {"Shape = plate with hole & Hole center = 2, 0", {"outside the body"}}});
     expect_fault(fault<1>(s, "Shape = plate with hole"), s, "Shape", {"'Dimension' 2 or 3"});
-    expect_fault(fault(s, "Shape = mesh file"), s, "Mesh file", {"is empty"});
-    expect_fault(fault(s, "Mesh file = a.msh"), s, "Mesh file", {"'box'"});
-    expect_fault(fault(s, "Node spacing = 0"), s, "Node spacing", {"greater than 0"});
-    expect_fault(fault(s, "Node spacing = 0.1 & Cells = 3, 3"),
-                 s,
-                 "Node spacing",
-                 {"'Cells' is given"});
-    expect_fault(fault(s, "Node spacing = 0.0166667"),
-                 s,
-                 "Node spacing",
-                 {"nearest", "0.0166666666667"});
-    expect_fault(fault(s, "Node spacing = 0.4 & Upper corner = 1, 1.5"),
-                 s,
-                 "Node spacing",
-                 {"is 0.5."});
-    expect_fault(fault(s, "Node spacing = 0.3 & Upper corner = 1, 1.41421356"),
-                 s,
-                 "Node spacing",
-                 {"give 'Cells' instead"});
+    expect_faults(s,
+                  {{"Shape = mesh file", {"is empty"}, "Mesh file"},
+                   {"Mesh file = a.msh", {"'box'"}},
+                   {"Node spacing = 0", {"greater than 0"}},
+                   {"Node spacing = 0.1 & Cells = 3, 3", {"'Cells' is given"}, "Node spacing"},
+                   {"Node spacing = 0.0166667", {"nearest", "0.0166666666667"}},
+                   {"Node spacing = 0.4 & Upper corner = 1, 1.5", {"is 0.5."}, "Node spacing"},
+                   {"Node spacing = 0.3 & Upper corner = 1, 1.41421356",
+                    {"give 'Cells' instead"},
+                    "Node spacing"}});
 
     Scene<2> scene;
     parse_scene<2>(
@@ -124,64 +107,46 @@ namespace PeriDeal
   TEST(Scenes, material_errors)
   {
     const std::string s = "Material", i = "Initial and source";
-    expect_fault(fault(s, "Conductivity = -1"), s, "Conductivity", {"a.prm:3: ", "greater than 0"});
-    expect_fault(fault(s, "Density = -2*pi"), s, "Density", {"greater than 0"});
-    expect_fault(fault(s, "Heat capacity = 0"), s, "Heat capacity", {"greater than 0"});
-    expect_fault(fault(s, "Conductivity = 1 + t"), s, "Conductivity", {"depends on t"});
-    expect_fault(fault(s, "Conductivity = 1 + S"),
-                 s,
-                 "Conductivity",
-                 {"'S'", "column 5", "known variables: x, y, z, T."});
-    expect_fault(fault(s, "Conductivity ="), s, "Conductivity", {"is empty"});
-    expect_fault(fault(s, "Interface rule = harmonics"),
-                 s,
-                 "Interface rule",
-                 {"Did you mean 'harmonic'?"});
-    expect_fault(fault(i, "Source = 1/0"), i, "Source", {"not finite"});
-    expect_fault(fault(i, "Initial value = foo(x)"), i, "Initial value", {"unknown name 'foo'"});
+    expect_faults(s,
+                  {{"Conductivity = -1", {"a.prm:3: ", "greater than 0"}},
+                   {"Density = -2*pi", {"greater than 0"}},
+                   {"Heat capacity = 0", {"greater than 0"}},
+                   {"Conductivity = 1 + t", {"depends on t"}},
+                   {"Conductivity = 1 + S", {"'S'", "column 5", "known variables: x, y, z, T."}},
+                   {"Conductivity =", {"is empty"}},
+                   {"Interface rule = harmonics", {"Did you mean 'harmonic'?"}}});
+    expect_faults(
+      i,
+      {{"Source = 1/0", {"not finite"}}, {"Initial value = foo(x)", {"unknown name 'foo'"}}});
   }
 
 
   TEST(Scenes, boundary_condition_errors)
   {
     const std::string s = "Boundary conditions";
-    expect_fault(fault(s, "Dirichlet = topp: 1"),
-                 s,
-                 "Dirichlet",
-                 {"a.prm:3: ", "left, right, bottom, top.", "Did you mean 'top'?"});
-    expect_fault(fault(s, "Dirichlet = front: 1"), s, "Dirichlet", {"unknown side 'front'"});
+    expect_faults(
+      s,
+      {{"Dirichlet = topp: 1", {"a.prm:3: ", "left, right, bottom, top.", "Did you mean 'top'?"}},
+       {"Dirichlet = front: 1", {"unknown side 'front'"}}});
     expect_fault(fault<1>(s, "Flux = top: 1"), s, "Flux", {"the sides are: left, right."});
-    expect_fault(fault(s, "Dirichlet = hole: 1"), s, "Dirichlet", {"unknown side 'hole'"});
-    expect_fault(fault(s, "Dirichlet = 3: 1"), s, "Dirichlet", {"unknown side '3'"});
-    expect_fault(fault(s, "Dirichlet = top"), s, "Dirichlet", {"'name: value'"});
-    expect_fault(fault(s, "Dirichlet = top:"), s, "Dirichlet", {"'name: value'"});
-    expect_fault(fault(s, "Dirichlet = top: 1; top: 2"), s, "Dirichlet", {"'top' is named twice"});
-    expect_fault(fault(s, "Dirichlet = left: 0; top: 2*xx"),
-                 s,
-                 "Dirichlet",
-                 {"side 'top'", "column 3"});
-    expect_fault(fault(s, "Dirichlet = top: 1, 2"), s, "Dirichlet", {"needs one formula"});
-    expect_fault(fault(s, "Convection = top: 1"), s, "Convection", {"coefficient, ambient value"});
-    expect_fault(fault(s, "Convection = top: -1, 2"), s, "Convection", {"-1 is negative"});
-    expect_fault(fault(s, "Dirichlet = top: 1 & Flux = top: 1"),
-                 s,
-                 "Flux",
-                 {"'top'", "'Dirichlet'"});
-    expect_fault(fault(s, "Dirichlet = top: 1 & Convection = top: 1, 2"),
-                 s,
-                 "Convection",
-                 {"'top'", "'Dirichlet'"});
-    expect_fault(fault(s, "Dirichlet = top: 1 & Symmetry = top"),
-                 s,
-                 "Dirichlet",
-                 {"'top'", "'Symmetry'"});
-    expect_fault(fault(s, "Flux = top: 1 & Symmetry = top"), s, "Flux", {"'top'", "'Symmetry'"});
-    expect_fault(fault(s, "Convection = top: 1, 0 & Symmetry = top"),
-                 s,
-                 "Convection",
-                 {"'top'", "'Symmetry'"});
-    expect_fault(fault(s, "Symmetry = top; top"), s, "Symmetry", {"'top' is named twice"});
-    expect_fault(fault(s, "Symmetry = lft"), s, "Symmetry", {"Did you mean 'left'?"});
+    expect_faults(
+      s,
+      {{"Dirichlet = hole: 1", {"unknown side 'hole'"}},
+       {"Dirichlet = 3: 1", {"unknown side '3'"}},
+       {"Dirichlet = top", {"'name: value'"}},
+       {"Dirichlet = top:", {"'name: value'"}},
+       {"Dirichlet = top: 1; top: 2", {"'top' is named twice"}},
+       {"Dirichlet = left: 0; top: 2*xx", {"side 'top'", "column 3"}},
+       {"Dirichlet = top: 1, 2", {"needs one formula"}},
+       {"Convection = top: 1", {"coefficient, ambient value"}},
+       {"Convection = top: -1, 2", {"-1 is negative"}},
+       {"Dirichlet = top: 1 & Flux = top: 1", {"'top'", "'Dirichlet'"}},
+       {"Dirichlet = top: 1 & Convection = top: 1, 2", {"'top'", "'Dirichlet'"}},
+       {"Dirichlet = top: 1 & Symmetry = top", {"'top'", "'Symmetry'"}, "Dirichlet"},
+       {"Flux = top: 1 & Symmetry = top", {"'top'", "'Symmetry'"}, "Flux"},
+       {"Convection = top: 1, 0 & Symmetry = top", {"'top'", "'Symmetry'"}, "Convection"},
+       {"Symmetry = top; top", {"'top' is named twice"}},
+       {"Symmetry = lft", {"Did you mean 'left'?"}}});
     EXPECT_EQ(fault(s, "Flux = top: 1; left: 0 & Convection = top: 1, 2 & Symmetry = left, right"),
               "");
 
@@ -202,28 +167,19 @@ namespace PeriDeal
   TEST(Scenes, crack_errors)
   {
     const std::string s = "Cracks";
-    expect_fault(fault(s, "Segments = 0,0 ; 1,0 ; 0,1"),
-                 s,
-                 "Segments",
-                 {"a.prm:3: ", "two points", "found 3"});
-    expect_fault(fault(s, "Segments = 0,0,0 ; 1,0,0"),
-                 s,
-                 "Segments",
-                 {"needs 2 coordinates, found 3"});
-    expect_fault(fault(s, "Segments = 0,0 ; 1,1 ; 0.5,0.5 ; 0.5,0.5"),
-                 s,
-                 "Segments",
-                 {"crack 2", "no length"});
-    expect_fault(fault(s, "Segments = 0,0 ; 1,1 ; 2,0 ; 2,1"),
-                 s,
-                 "Segments",
-                 {"crack 2 (2,0 ; 2,1)", "outside the body"});
+    expect_faults(
+      s,
+      {{"Segments = 0,0 ; 1,0 ; 0,1", {"a.prm:3: ", "two points", "found 3"}},
+       {"Segments = 0,0,0 ; 1,0,0", {"needs 2 coordinates, found 3"}},
+       {"Segments = 0,0 ; 1,1 ; 0.5,0.5 ; 0.5,0.5", {"crack 2", "no length"}},
+       {"Segments = 0,0 ; 1,1 ; 2,0 ; 2,1", {"crack 2 (2,0 ; 2,1)", "outside the body"}}});
     // passes the corner of the body by, although the bounding boxes overlap
     expect_fault(fault(s, "Segments = 0.8,1.5 ; 1.5,0.8"), s, "Segments", {"outside the body"});
     EXPECT_EQ(fault(s, "Segments = -1,0.5 ; 2,0.5 ; 0.5,1.5 ; 1.5,0.4"), "");
     expect_fault(fault<3>(s, "Segments = 0,0,0 ; 1,0,0"), s, "Segments", {"Polygons"});
-    expect_fault(fault<1>(s, "Segments = 0 ; 1"), s, "Segments", {"'Dimension' 2 or 3"});
-    expect_fault(fault<1>(s, "Polygons = 0 ; 1"), s, "Polygons", {"'Dimension' 2 or 3"});
+    expect_faults<1>(
+      s,
+      {{"Segments = 0 ; 1", {"'Dimension' 2 or 3"}}, {"Polygons = 0 ; 1", {"'Dimension' 2 or 3"}}});
     expect_fault(fault(s, "Polygons = 0,0 ; 1,0 ; 1,1"), s, "Polygons", {"Segments"});
     const std::string square = "0,0,0.5 ; 1,0,0.5 ; 1,1,0.5 ; 0,1,";
     EXPECT_EQ(fault<3>(s, "Polygons = " + square + "0.5 | 0,0,0 ; 1,0,0 ; 0,1,1"), "");
@@ -232,36 +188,21 @@ namespace PeriDeal
                  "Polygons",
                  {"crack 1", "not planar"});
     EXPECT_EQ(fault<3>(s, "Polygons = " + square + "0.50000000001"), "");
-    expect_fault(fault<3>(s, "Polygons = 0,0,0 ; 1,0,0"),
-                 s,
-                 "Polygons",
-                 {"three or more corners, found 2"});
-    expect_fault(fault<3>(s, "Polygons = 0,0,0 ; 1,0,0 ; 0.5,0,0"), s, "Polygons", {"no area"});
-    expect_fault(fault<3>(s, "Polygons = 0,0,0 ; 1,0,0 ; 1,0,0"),
-                 s,
-                 "Polygons",
-                 {"same corner twice"});
-    expect_fault(fault<3>(s, "Polygons = 0,0,2 ; 1,0,2 ; 1,1,2"),
-                 s,
-                 "Polygons",
-                 {"crack 1", "outside the body"});
-    expect_fault(fault(s, "Transmission = 1.5"), s, "Transmission", {"from 0 to 1"});
-    expect_fault(fault(s, "Transmission = -0.1"), s, "Transmission", {"from 0 to 1"});
-    expect_fault(fault(s, "Transmission = 0.5 & Contact conductance = 3"),
-                 s,
-                 "Contact conductance",
-                 {"'Transmission' is given"});
-    expect_fault(fault(s, "Contact conductance = -3"), s, "Contact conductance", {"0 or more"});
-    expect_fault(fault(s, "Contact conductance = abc"), s, "Contact conductance", {"not a number"});
-    expect_fault(fault(s, "Mesh = faces & Transmission = 0.5"),
-                 s,
-                 "Mesh",
-                 {"Transmission", "use 'pairs'"});
-    expect_fault(fault(s, "Mesh = removed & Contact conductance = 5"),
-                 s,
-                 "Mesh",
-                 {"Contact conductance", "use 'pairs'"});
-    expect_fault(fault(s, "Mesh = pair"), s, "Mesh", {"Did you mean 'pairs'?"});
+    expect_faults<3>(s,
+                     {{"Polygons = 0,0,0 ; 1,0,0", {"three or more corners, found 2"}},
+                      {"Polygons = 0,0,0 ; 1,0,0 ; 0.5,0,0", {"no area"}},
+                      {"Polygons = 0,0,0 ; 1,0,0 ; 1,0,0", {"same corner twice"}},
+                      {"Polygons = 0,0,2 ; 1,0,2 ; 1,1,2", {"crack 1", "outside the body"}}});
+    expect_faults(
+      s,
+      {{"Transmission = 1.5", {"from 0 to 1"}},
+       {"Transmission = -0.1", {"from 0 to 1"}},
+       {"Transmission = 0.5 & Contact conductance = 3", {"'Transmission' is given"}},
+       {"Contact conductance = -3", {"0 or more"}},
+       {"Contact conductance = abc", {"not a number"}},
+       {"Mesh = faces & Transmission = 0.5", {"Transmission", "use 'pairs'"}, "Mesh"},
+       {"Mesh = removed & Contact conductance = 5", {"Contact conductance", "use 'pairs'"}, "Mesh"},
+       {"Mesh = pair", {"Did you mean 'pairs'?"}}});
   }
 
 
@@ -274,44 +215,31 @@ namespace PeriDeal
       return fault(mesh + "subsection Peridynamics\nset Horizon = 0.1\nset " + entry + " = " +
                    value + "\nend\n");
     };
-    expect_fault(fault(s, "Horizon ratio = 0.5"), s, "Horizon ratio", {"a.prm:3: ", "1 or more"});
-    expect_fault(fault(s, "Horizon ratio = 12e"), s, "Horizon ratio", {"'12e' is not a number"});
-    expect_fault(fault(s, "Horizon = 0"), s, "Horizon", {"greater than 0"});
-    expect_fault(fault(s, "Horizon = -1"), s, "Horizon", {"greater than 0"});
-    expect_fault(fault(s, "Horizon = 0.01"),
-                 s,
-                 "Horizon",
-                 {"shorter than the node spacing in x, 0.05"});
-    expect_fault(fault(s, "Horizon = 0.2 & Horizon ratio = 4"),
-                 s,
-                 "Horizon",
-                 {"'Horizon ratio' is given"});
+    expect_faults(s,
+                  {{"Horizon ratio = 0.5", {"a.prm:3: ", "1 or more"}},
+                   {"Horizon ratio = 12e", {"'12e' is not a number"}},
+                   {"Horizon = 0", {"greater than 0"}},
+                   {"Horizon = -1", {"greater than 0"}},
+                   {"Horizon = 0.01", {"shorter than the node spacing in x, 0.05"}},
+                   {"Horizon = 0.2 & Horizon ratio = 4", {"'Horizon ratio' is given"}, "Horizon"}});
     expect_fault(fault("subsection Domain\nset Cells = 10, 2\nend\nsubsection Peridynamics\nset "
                        "Horizon ratio = 3\nend\n"),
                  s,
                  "Horizon ratio",
                  {"a.prm:6: ", "node spacing in y, 0.5"});
-    expect_fault(fault(s, "Kernel = conica"), s, "Kernel", {"Did you mean 'conical'?"});
-    expect_fault(fault(s, "Kernel exponent = 3"), s, "Kernel exponent", {"0, 1 or 2"});
-    expect_fault(fault(s, "Kernel exponent = 1.5"), s, "Kernel exponent", {"whole number"});
-    expect_fault(fault(s, "Volume fraction = no"), s, "Volume fraction", {"none, linear, exact"});
-    expect_fault(fault(s, "Calibration = x"), s, "Calibration", {"discrete, analytic"});
-    expect_fault(fault(s, "Self term = x"), s, "Self term", {"none, paper"});
-    expect_fault(fault(s, "Nodal volume = x"), s, "Nodal volume", {"partial, full"});
-    expect_fault(fault(s, "Layer rows = 0"), s, "Layer rows", {"1 or more"});
-    expect_fault(fault(s, "Boundary treatment = exchanged"),
-                 s,
-                 "Boundary treatment",
-                 {"fictitious mirror"});
-    expect_fault(fault(s, "Surface correction = crack scalng"),
-                 s,
-                 "Surface correction",
-                 {"crack scaling"});
-    expect_fault(fault(s, "Operator form = matrix"), s, "Operator form", {"auto, lattice, stored"});
-    expect_fault(fault(s, "Flux treatment = layer extrapolation"),
-                 s,
-                 "Flux treatment",
-                 {"'Dimension' 1"});
+    expect_faults(s,
+                  {{"Kernel = conica", {"Did you mean 'conical'?"}},
+                   {"Kernel exponent = 3", {"0, 1 or 2"}},
+                   {"Kernel exponent = 1.5", {"whole number"}},
+                   {"Volume fraction = no", {"none, linear, exact"}},
+                   {"Calibration = x", {"discrete, analytic"}},
+                   {"Self term = x", {"none, paper"}},
+                   {"Nodal volume = x", {"partial, full"}},
+                   {"Layer rows = 0", {"1 or more"}},
+                   {"Boundary treatment = exchanged", {"fictitious mirror"}},
+                   {"Surface correction = crack scalng", {"crack scaling"}},
+                   {"Operator form = matrix", {"auto, lattice, stored"}},
+                   {"Flux treatment = layer extrapolation", {"'Dimension' 1"}}});
     EXPECT_EQ(fault<1>(s, "Flux treatment = layer extrapolation"), "");
     expect_fault(fault<3>(s, "Self term = paper"), s, "Self term", {"'Dimension' 1 and 2"});
     expect_fault(on_mesh("Self term", "paper"), s, "Self term", {"mesh file"});
@@ -338,9 +266,10 @@ namespace PeriDeal
   {
     const std::string s     = "Finite elements",
                       crack = "subsection Cracks\nset Segments = 0,0 ; 1,1\nend\n";
-    expect_fault(fault(s, "Degree = 0"), s, "Degree", {"1, 2 or 3"});
-    expect_fault(fault(s, "Degree = 4"), s, "Degree", {"1, 2 or 3"});
-    expect_fault(fault(s, "Capacity = lump"), s, "Capacity", {"Did you mean 'lumped'?"});
+    expect_faults(s,
+                  {{"Degree = 0", {"1, 2 or 3"}},
+                   {"Degree = 4", {"1, 2 or 3"}},
+                   {"Capacity = lump", {"Did you mean 'lumped'?"}}});
     const std::string two = "subsection Finite elements\nset Degree = 2\nend\n";
     expect_fault(fault(crack + two), s, "Degree", {"a.prm:6: ", "pairs"});
     EXPECT_EQ(fault(two), "");
@@ -376,24 +305,20 @@ namespace PeriDeal
   TEST(Scenes, time_and_solver_errors)
   {
     const std::string s = "Time";
-    expect_fault(fault(s, "End time = 0"), s, "End time", {"greater than 0"});
-    expect_fault(fault(s, "End time = abc"), s, "End time", {"'abc' is not a number"});
-    expect_fault(fault(s, "Steady = maybe"), s, "Steady", {"true, false"});
-    expect_fault(fault(s, "Stepper = euller"), s, "Stepper", {"Did you mean 'euler'?"});
-    expect_fault(fault(s, "Time step = 0"), s, "Time step", {"greater than 0"});
-    expect_fault(fault(s, "Time step = -1"), s, "Time step", {"greater than 0"});
-    expect_fault(fault(s, "Time step = atuo"), s, "Time step", {"'auto' or a number"});
-    expect_fault(fault(s, "Time step = 12e"), s, "Time step", {"'12e' is not a number"});
-    expect_fault(fault(s, "Tolerance = 1"), s, "Tolerance", {"between 0 and 1"});
-    expect_fault(fault("Solver", "Tolerance = 0"), "Solver", "Tolerance", {"between 0 and 1"});
-    expect_fault(fault("Solver", "Maximum iterations = 0"),
-                 "Solver",
-                 "Maximum iterations",
-                 {"1 or more"});
-    expect_fault(fault("Solver", "Maximum iterations = -5"),
-                 "Solver",
-                 "Maximum iterations",
-                 {"whole number"});
+    expect_faults(s,
+                  {{"End time = 0", {"greater than 0"}},
+                   {"End time = abc", {"'abc' is not a number"}},
+                   {"Steady = maybe", {"true, false"}},
+                   {"Stepper = euller", {"Did you mean 'euler'?"}},
+                   {"Time step = 0", {"greater than 0"}},
+                   {"Time step = -1", {"greater than 0"}},
+                   {"Time step = atuo", {"'auto' or a number"}},
+                   {"Time step = 12e", {"'12e' is not a number"}},
+                   {"Tolerance = 1", {"between 0 and 1"}}});
+    expect_faults("Solver",
+                  {{"Tolerance = 0", {"between 0 and 1"}},
+                   {"Maximum iterations = 0", {"1 or more"}},
+                   {"Maximum iterations = -5", {"whole number"}}});
 
     const std::string steady = "subsection Time\nset Steady = true\nset Stepper = euler\nend\n";
     const auto        with   = [&](const std::string &conditions) {
@@ -432,28 +357,26 @@ namespace PeriDeal
   TEST(Scenes, output_errors)
   {
     const std::string s = "Output";
-    expect_fault(fault(s, "Fields = vtk"), s, "Fields", {"Did you mean 'vtu'?"});
-    expect_fault(fault(s, "Fields ="), s, "Fields", {"is empty"});
-    expect_fault(fault(s, "Fields = vtu, none"), s, "Fields", {"stands alone"});
-    expect_fault(fault(s, "Write at = -0.1"), s, "Write at", {"-0.1 is negative"});
-    expect_fault(fault(s, "Write at = 0.1 0.2"), s, "Write at", {"not a number"});
-    expect_fault(fault(s, "Write every = 0"), s, "Write every", {"greater than 0"});
-    expect_fault(fault(s, "Write every = -1"), s, "Write every", {"greater than 0"});
-    expect_fault(fault(s, "Write every = 1e-6"), s, "Write every", {"more than 100000"});
-    expect_fault(fault(s, "Write every = 0.1 & Write at = 0.2"),
-                 s,
-                 "Write every",
-                 {"'Write at' is given"});
-    expect_fault(fault(s, "Probes = 0,0 ; 0.5,2"), s, "Probes", {"(0.5, 2) lies outside"});
-    expect_fault(fault(s, "Probes = 0,0,0"), s, "Probes", {"needs 2 coordinates, found 3"});
-    expect_fault(fault(s, "Line = 0,0 ; 1,1"), s, "Line", {"number of points"});
-    expect_fault(fault(s, "Line = 0,0 ; 1,1 ; 1"), s, "Line", {"2 or more"});
-    expect_fault(fault(s, "Line = 0,0 ; 0,0 ; 3"), s, "Line", {"same point"});
-    expect_fault(fault(s, "Line = 0,0 ; 1,1.5 ; 3"), s, "Line", {"(1, 1.5) lies outside"});
-    expect_fault(fault(s, "Grid = 4"), s, "Grid", {"'4'", "2 numbers of cells"});
-    expect_fault(fault(s, "Grid = 4, 4 ; 0, 4"), s, "Grid", {"found 0"});
-    expect_fault(fault(s, "Grid = 4, x"), s, "Grid", {"'x'"});
-    expect_fault(fault(s, "Grid = 5000, 5000"), s, "Grid", {"more than 1000000 points"});
+    expect_faults(s,
+                  {{"Fields = vtk", {"Did you mean 'vtu'?"}},
+                   {"Fields =", {"is empty"}},
+                   {"Fields = vtu, none", {"stands alone"}},
+                   {"Write at = -0.1", {"-0.1 is negative"}},
+                   {"Write at = 0.1 0.2", {"not a number"}},
+                   {"Write every = 0", {"greater than 0"}},
+                   {"Write every = -1", {"greater than 0"}},
+                   {"Write every = 1e-6", {"more than 100000"}},
+                   {"Write every = 0.1 & Write at = 0.2", {"'Write at' is given"}, "Write every"},
+                   {"Probes = 0,0 ; 0.5,2", {"(0.5, 2) lies outside"}},
+                   {"Probes = 0,0,0", {"needs 2 coordinates, found 3"}},
+                   {"Line = 0,0 ; 1,1", {"number of points"}},
+                   {"Line = 0,0 ; 1,1 ; 1", {"2 or more"}},
+                   {"Line = 0,0 ; 0,0 ; 3", {"same point"}},
+                   {"Line = 0,0 ; 1,1.5 ; 3", {"(1, 1.5) lies outside"}},
+                   {"Grid = 4", {"'4'", "2 numbers of cells"}},
+                   {"Grid = 4, 4 ; 0, 4", {"found 0"}},
+                   {"Grid = 4, x", {"'x'"}},
+                   {"Grid = 5000, 5000", {"more than 1000000 points"}}});
     expect_fault(fault("subsection Domain\nset Shape = plate with hole\nend\n"
                        "subsection Output\nset Grid = 4, 4\nend\n"),
                  s,

@@ -76,6 +76,30 @@ namespace PeriDeal
     }
 
 
+    /** Statements of a section, parts of the message, and the entry that it names. */
+    struct Mistake
+    {
+      std::string              statements;
+      std::vector<std::string> parts;
+      std::string              entry = {}; // if it is not that of the last statement
+    };
+
+
+    template <int dim = 2>
+    void expect_faults(const std::string &section, const std::vector<Mistake> &mistakes)
+    {
+      for (const Mistake &one : mistakes)
+        {
+          SCOPED_TRACE(one.statements);
+          const std::string last = split_list(one.statements, '&').back();
+          expect_fault(fault<dim>(section, one.statements),
+                       section,
+                       one.entry.empty() ? trimmed(last.substr(0, last.find('='))) : one.entry,
+                       one.parts);
+        }
+    }
+
+
     /** A scene file on disk for the time of a test. */
     class TemporaryFile
     {
