@@ -10,8 +10,8 @@
 #include <perideal/mesh/node_keys.h>
 #include <perideal/problems/result_record.h>
 #include <perideal/problems/run_context.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/with_formulas.h>
 
 #include <cmath>
 

@@ -6,8 +6,8 @@
 #include <perideal/base/user_error.h>
 #include <perideal/problems/body_causes.h>
 #include <perideal/problems/guards.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/with_formulas.h>
 
 #include <vector>
 

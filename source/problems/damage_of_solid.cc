@@ -7,7 +7,7 @@
 
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
-#include <perideal/scene/with_formulas.h>
+#include <perideal/scene/expression.h>
 
 #include <algorithm>
 

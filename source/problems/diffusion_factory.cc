@@ -4,8 +4,8 @@
 #include <perideal/operators/diffusion/bond_operator.h>
 #include <perideal/operators/diffusion/fem_operator.h>
 #include <perideal/problems/diffusion_problem.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>

@@ -14,8 +14,8 @@
 #include <perideal/laws/crack_conductance.h>
 #include <perideal/laws/lattice_family.h>
 #include <perideal/problems/diffusion_bounds.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/with_formulas.h>
 
 #include <algorithm>
 #include <array>
@@ -332,12 +332,10 @@ namespace PeriDeal
     if (!scene.domain.has_lattice() || weights.members().empty() ||
         p.surface_correction == SurfaceCorrection::energy)
       return {};
-    const auto cut        = sides_that_cut(scene);
-    const bool partial    = p.nodal_volume == NodalVolume::partial,
-               at_centers = scene.domain.has_nodes_at_centers(),
-               of_itself  = std::any_of(p.entries().begin(), p.entries().end(), [](const Entry &e) {
-                 return e.name == "Boundary treatment" && e.text == "auto";
-               });
+    const auto cut         = sides_that_cut(scene);
+    const bool partial     = p.nodal_volume == NodalVolume::partial,
+               at_centers  = scene.domain.has_nodes_at_centers(),
+               of_itself   = !p.is_given("Boundary treatment");
     const double first_row = at_centers || !partial ? 1. : 0.5;
     double       most = 0., width = 0., longest = 0., length = 0.;
     unsigned int axis = 0, along = 0;

@@ -5,7 +5,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/node_keys.h>
 #include <perideal/problems/run_context.h>
-#include <perideal/scene/with_formulas.h>
+#include <perideal/scene/expression.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "diffusion_totals.h"
 
 #include <perideal/problems/result_record.h>
-#include <perideal/scene/with_formulas.h>
+#include <perideal/scene/expression.h>
 
 #include <algorithm>
 #include <cmath>

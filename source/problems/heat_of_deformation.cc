@@ -8,7 +8,6 @@
 #include <perideal/base/diverged.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
-#include <perideal/scene/warmed_by_deformation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -121,7 +120,7 @@ namespace PeriDeal
   template <int dim>
   void HeatOfDeformation<dim>::require(const Scene<dim> &scene)
   {
-    if (!absolute_reference(scene.elasticity))
+    if (!scene.elasticity.absolute_reference)
       return;
     const auto refuse = [&](const bool fault, const std::string &what) {
       scene.elasticity.refuse(fault,
@@ -162,7 +161,7 @@ namespace PeriDeal
     DiffusionProblem<dim> &heat        = *solid.heat;
     const MPI_Comm         all         = solid.dofs().get_communicator();
     const Vector          &capacity    = heat.op().lumped_capacity();
-    const double           T0          = *absolute_reference(solid.scene.elasticity);
+    const double           T0          = *solid.scene.elasticity.absolute_reference;
     const double           tolerance   = std::max(10. * solid.scene.solver.tolerance, 1e-12);
     const HeatedNodes      nodes       = heated_nodes(solid, T0);
     const unsigned int     n           = nodes.slope.size();

@@ -9,8 +9,8 @@
 #include <perideal/operators/solid/state_operator.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
@@ -30,12 +30,9 @@ namespace PeriDeal
     template <int dim>
     void refuse_breaking(const Scene<dim> &scene)
     {
-      const std::vector<Entry> &entries = scene.elasticity.entries();
-      const std::string &way = std::find_if(entries.begin(), entries.end(), [](const Entry &entry) {
-                                 return entry.name == "Breaking";
-                               })->text;
       scene.elasticity.refuse(
-        way != "auto" && !scene.material.fracture_energy && !scene.material.critical_stretch,
+        scene.elasticity.is_given("Breaking") && !scene.material.fracture_energy &&
+          !scene.material.critical_stretch,
         "Breaking",
         "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
     }
@@ -66,7 +63,7 @@ namespace PeriDeal
                       "is for 'Models = peridynamics', not 'coupled'; leave the entry out.");
       refuse_breaking(scene);
       scene.elasticity.refuse(
-        scene.elasticity.contact_is_asked && !bonds &&
+        scene.elasticity.contact_is_asked() && !bonds &&
           (none || !scene.coupling.exchanges() || scene.cracks.on_faces()),
         "Contact",
         "has no effect: it is for 'Models = peridynamics', and for 'coupled' with 'Scheme = exchange' where 'Mesh' in section 'Cracks' is not 'faces'. Leave it out, or add one of these.");

@@ -6,9 +6,8 @@
 #include <perideal/problems/body_causes.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/warmed_by_deformation.h>
-#include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -186,7 +185,7 @@ namespace PeriDeal
     constexpr double share = 0.01; // of the end time, if no step is given
     if (scene.warms_slowly())      // `Time step` is that of the heat problem
       {
-        const bool of_both = absolute_reference(scene.elasticity).has_value();
+        const bool of_both = scene.elasticity.absolute_reference.has_value();
         if (of_both && scene.time.time_step > 0.)
           return scene.time.time_step;
         const bool in_steps = of_both || scene.material.fracture_energy ||
@@ -406,14 +405,14 @@ namespace PeriDeal
     options.tolerance        = scene.solver.tolerance;
     options.max_iterations   = scene.solver.most_iterations(scene.elasticity.solver);
     options.direct_up_to     = scene.solver.direct_up_to;
-    options.multigrid        = scene.elasticity.multigrid;
-    options.breaks_in_motion = scene.elasticity.breaks_in_motion; // where stretches are known
+    options.multigrid        = scene.elasticity.multigrid();
+    options.breaks_in_motion = scene.elasticity.breaks_in_motion(); // where stretches are known
     options.divides_steps    = !scene.warms_slowly(); // temperatures are those of their ends
     auto solver              = make_static_solver(scene.elasticity.solver_name(), op(), options);
     loading                  = std::make_unique<SlowLoading>(op(), std::move(solver), options);
     if (scene.guards.goes_on())
       loading->findings().let_wait();
-    if (heat == nullptr || !absolute_reference(scene.elasticity))
+    if (heat == nullptr || !scene.elasticity.absolute_reference)
       return;
     warming               = std::make_unique<HeatOfDeformation<dim>>();
     heat->heated_by_solid = true;

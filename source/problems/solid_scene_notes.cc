@@ -278,8 +278,8 @@ namespace PeriDeal
     constexpr double from = 3., to = 42.; // degrees
     if constexpr (dim == 2)
       {
-        if (!breaks(scene) || !scene.elasticity.is_static() || scene.elasticity.breaks_in_motion ||
-            !scene.domain.has_lattice())
+        if (!breaks(scene) || !scene.elasticity.is_static() ||
+            scene.elasticity.breaks_in_motion() || !scene.domain.has_lattice())
           return;
         for (unsigned int k = 0; k < scene.cracks.cracks.size(); ++k)
           {

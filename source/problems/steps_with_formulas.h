@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/base/diverged.h>
-#include <perideal/scene/with_formulas.h>
+#include <perideal/scene/expression.h>
 #include <perideal/solvers/step_span.h>
 
 #include <functional>

@@ -65,7 +65,7 @@ namespace PeriDeal
     bool takes_own_bonds(const BodyParameters<dim> &body)
     {
       const auto thin = thin_directions(body);
-      return takes_steps(body) || std::find(thin.begin(), thin.end(), true) != thin.end();
+      return takes_steps(body) || has(thin, true);
     }
 
 
@@ -148,7 +148,7 @@ namespace PeriDeal
                                                    "('Surface correction = none' in section 'Peridynamics')");
     std::vector<std::string> names = held;
     std::copy_if(loaded.begin(), loaded.end(), std::back_inserter(names), [&](const auto &name) {
-      return std::find(held.begin(), held.end(), name) == held.end();
+      return !has(held, name);
     });
     if (!names.empty())
       text += ", where one row of nodes bears what acts on " + join_names(names);

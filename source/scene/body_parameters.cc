@@ -108,24 +108,16 @@ namespace PeriDeal
 
   namespace
   {
-    /** The values of the default texts, for all sections that need none of a user. */
+    /** What the defaults of a scene mean for this physics where they leave it open. */
     template <int dim>
     void take_defaults(BodyParameters<dim> &body, const Physics physics)
     {
-      body.domain.parse();
-      body.initial_and_source.parse(physics, dim);
-      body.boundary_conditions.parse(true, false, physics);
-      body.cracks.parse(physics);
-      if (physics == Physics::elasticity)
-        body.cracks.mesh = CrackMesh::removed;
       body.peridynamics.parse(physics);
       body.peridynamics.treatment = BoundaryTreatment::none;
-      if (physics != Physics::elasticity)
+      if (physics == Physics::elasticity)
+        body.cracks.mesh = CrackMesh::removed;
+      else
         body.peridynamics.surface_correction = SurfaceCorrection::none;
-      body.coupling.parse();
-      body.elasticity.parse(physics, dim);
-      body.finite_elements.parse();
-      body.material.thermal_expansion = MaterialProperty(Expression(0.));
     }
   } // namespace
 

@@ -2,9 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/boundary_conditions.h>
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/quoted.h>
 
 #include <algorithm>
 
@@ -27,10 +25,9 @@ namespace PeriDeal
                                 std::to_string(n) + " formulas: " + join_names(names) + "."));
       std::vector<Expression> formulas;
       for (std::size_t k = 0; k < pieces.size(); ++k)
-        {
-          const KnownVariables known(names[k] == "coefficient" ? "x, y, z" : "x, y, z, t");
-          formulas.emplace_back(pieces[k], where);
-        }
+        formulas.emplace_back(pieces[k],
+                              where,
+                              names[k] == "coefficient" ? "x, y, z" : "x, y, z, t");
       return formulas;
     }
 
@@ -81,65 +78,33 @@ namespace PeriDeal
     const std::string sides =
       " Sides: left, right (x), bottom, top (y), back, front (z), hole; of a mesh file its boundary ids and physical names (those with `:`, `;` or `,` in double quotation marks); "
       "or names of `Parts`.";
-    declare(
-      "Parts",
-      EntryType::list,
-      "",
-      "",
+    declare("Parts", EntryType::list) =
       "Places for conditions that are no whole sides, several separated by `;`: `name: SIDE if FORMULA`, what of a side the formula (of x, y, z) is true or "
       "> 0 on; `name: region FORMULA`, the nodes where it is; `name: point X, Y[, Z]`, the node nearest to the point, which may lie outside the body by a cell at most. The names stand wherever those of sides "
       "do. `Flux` and `Traction` act on the area of a part of a side; on a region or a point they are the total power or force (in 2D per thickness), shared by its nodes in "
-      "proportion to their volume.");
-    declare(
-      "Dirichlet",
-      EntryType::list,
-      "",
-      "temperature",
+      "proportion to their volume.";
+    declare("Dirichlet", EntryType::list, "", "temperature") =
       "Given temperatures: `side: formula of x, y, z, t`, several separated by `;`. Where two sides meet, the one named first holds." +
-        sides);
+      sides;
     for (const TransferKind &kind : transfer_kinds())
-      declare(kind.entry, EntryType::list, "", kind.unit, kind.documentation);
-    declare(
-      "Symmetry",
-      EntryType::list,
-      "",
-      "",
-      "Sides that are symmetry planes, separated by `;` or `,`. Fictitious nodes beyond them mirror the temperature; on meshes from files leave it out for heat, where a side named nowhere is insulated. With elasticity such a side has no displacement normal to itself.");
-    declare(
-      "Displacement",
-      EntryType::list,
-      "",
-      "length",
+      declare(kind.entry, EntryType::list, "", kind.unit) = kind.documentation;
+    declare("Symmetry", EntryType::list) =
+      "Sides that are symmetry planes, separated by `;` or `,`. Fictitious nodes beyond them mirror the temperature; on meshes from files leave it out for heat, where a side named nowhere is insulated. With elasticity such a side has no displacement normal to itself.";
+    declare("Displacement", EntryType::list, "", "length") =
       "Elasticity: given displacements, `side: component, component`, several sides separated by `;`; one component per direction, a formula of "
       "x, y, z, t or the word `free` where nothing holds it, also as a branch, `if(y < 1, 0, free)`, whose condition may not depend on t. Where two sides meet, the one named first "
       "holds." +
-        sides);
-    declare(
-      "Velocity",
-      EntryType::list,
-      "",
-      "length/time",
-      "Elasticity with `Solver = dynamics`: given velocities, written like `Displacement`. What is held so moves by the integral of the velocity from time 0 on. Comes after `Displacement` where sides meet.");
-    declare(
-      "Displacement layer",
-      EntryType::text,
-      "",
-      "length",
+      sides;
+    declare("Velocity", EntryType::list, "", "length/time") =
+      "Elasticity with `Solver = dynamics`: given velocities, written like `Displacement`. What is held so moves by the integral of the velocity from time 0 on. Comes after `Displacement` where sides meet.";
+    declare_if_given(displacement_layer, "Displacement layer", "", "length", Bounds::length) =
       "Depth behind the sides in `Displacement` in which all nodes are held, each as the formula says at its own place, by all models; with two horizons no family of the nodes that are left is cut "
-      "off there. Empty: the outermost row of nodes.");
-    declare(
-      "Traction",
-      EntryType::list,
-      "",
-      "force/area",
-      "Elasticity: given forces per area, `side: component, component`, several sides separated by `;`; one component per direction, a formula of x, y, z, t. A side named nowhere is free.");
-    declare(
-      "Traction layer",
-      EntryType::text,
-      "",
-      "length",
+      "off there. Empty: the outermost row of nodes.";
+    declare("Traction", EntryType::list, "", "force/area") =
+      "Elasticity: given forces per area, `side: component, component`, several sides separated by `;`; one component per direction, a formula of x, y, z, t. A side named nowhere is free.";
+    declare_if_given(traction_layer, "Traction layer", "", "length", Bounds::length) =
       "Depth over which peridynamics spreads tractions as body forces traction/depth, in each column of nodes behind the side; their sum stays that of the "
-      "tractions. Empty: the outermost row of nodes.");
+      "tractions. Empty: the outermost row of nodes.";
   }
 
 
@@ -225,8 +190,7 @@ namespace PeriDeal
         const auto [name, value] = name_and_value(piece, where(entry));
         const std::string at     = where(entry) + ", part '" + name + "'";
         const auto        known  = side_names();
-        if (std::find(known.begin(), known.end(), name) != known.end() ||
-            name.find_first_not_of("0123456789") == std::string::npos)
+        if (has(known, name) || name.find_first_not_of("0123456789") == std::string::npos)
           entry_error(at, "is the name of a side. Give the part another one.");
         if (std::any_of(parts.begin(), parts.end(), [part_name = name](const Part &p) {
               return p.name == part_name;
@@ -332,7 +296,7 @@ namespace PeriDeal
               "0 normal to it and 'free' along it.");
         if (name == "hole")
           error("Symmetry", "'hole' is not flat: only flat sides can be symmetry planes.");
-        if (std::find(symmetry.begin(), symmetry.end(), id) != symmetry.end())
+        if (has(symmetry, id))
           error("Symmetry", "the side '" + name + "' is named twice.");
         symmetry.push_back(id);
       }
@@ -361,8 +325,7 @@ namespace PeriDeal
   void BoundaryConditions<dim>::check_parts() const
   {
     const auto check_symmetry = [&](const std::string &entry, const auto &condition) {
-      if (part(condition.id) != nullptr &&
-          std::find(symmetry.begin(), symmetry.end(), side_of(condition.id)) != symmetry.end())
+      if (part(condition.id) != nullptr && has(symmetry, side_of(condition.id)))
         error(entry,
               "the part '" + condition.name + "' lies on the side '" +
                 name_of(side_of(condition.id)) +
@@ -404,24 +367,10 @@ namespace PeriDeal
       displacement.push_back(rate);
     traction = parse_vectors("Traction");
     parse_symmetry();
-    displacement_layer = parse_layer("Displacement layer");
-    traction_layer     = parse_layer("Traction layer");
+    SceneSection::parse();
     check_scalar_conditions();
     check_vector_conditions();
     check_parts();
-  }
-
-
-  template <int dim>
-  double BoundaryConditions<dim>::parse_layer(const std::string &entry) const
-  {
-    if (this->text(entry).empty())
-      return -1.;
-    const double depth = parse_number(this->text(entry), this->where(entry));
-    if (!(depth > 0.))
-      this->error(entry,
-                  "found " + this->text(entry) + ", needs a length greater than 0 (or nothing).");
-    return depth;
   }
 
 
@@ -441,29 +390,22 @@ namespace PeriDeal
   void BoundaryConditions<dim>::refuse_other_physics(const Physics physics,
                                                      const bool    with_heat) const
   {
-    const bool elastic = physics == Physics::elasticity;
-    const auto refuse  = [&](const std::string &entry, const std::string &remedy) {
-      if (is_given(entry))
-        error(entry,
-              elastic ? "is for diffusion; 'Physics' is 'elasticity'. Use " + remedy +
-                          ", or 'Temperature change = computed' in section 'Elasticity'." :
-                         "is for 'Physics = elasticity'; 'Physics' is '" +
-                          names_of(physics).physics + "'. Use " + remedy + ".");
+    const auto only_diffusion = [&](const std::string &entry, const std::string &remedy) {
+      refuse(physics == Physics::elasticity && !with_heat && is_given(entry),
+             entry,
+             "is for diffusion; 'Physics' is 'elasticity'. Use " + remedy +
+               ", or 'Temperature change = computed' in section 'Elasticity'.");
     };
-    if (elastic && with_heat)
-      return;
-    if (elastic)
-      {
-        refuse("Dirichlet", "'Displacement'");
-        for (const TransferKind &kind : transfer_kinds())
-          refuse(kind.entry, kind.fixes_level ? "'Displacement' or 'Traction'" : "'Traction'");
-        return;
-      }
-    refuse("Displacement", "'Dirichlet'");
-    refuse("Velocity", "'Dirichlet'");
-    refuse("Traction", "'Flux'");
-    refuse("Displacement layer", "'Boundary treatment' in section 'Peridynamics'");
-    refuse("Traction layer", "'Flux treatment' in section 'Peridynamics'");
+    only_diffusion("Dirichlet", "'Displacement'");
+    for (const TransferKind &kind : transfer_kinds())
+      only_diffusion(kind.entry, kind.fixes_level ? "'Displacement' or 'Traction'" : "'Traction'");
+    for (const auto &[entry, remedy] :
+         {std::make_pair("Displacement", "'Dirichlet'"),
+          std::make_pair("Velocity", "'Dirichlet'"),
+          std::make_pair("Traction", "'Flux'"),
+          std::make_pair("Displacement layer", "'Boundary treatment' in section 'Peridynamics'"),
+          std::make_pair("Traction layer", "'Flux treatment' in section 'Peridynamics'")})
+      refuse_unless_elastic(entry, physics, std::string(" Use ") + remedy + ".");
   }
 
 
@@ -485,7 +427,7 @@ namespace PeriDeal
                   (grip.rate ? "Velocity" : "Displacement") +
                   "'; a traction in the same direction contradicts it. Give 0 for that component, or make the "
                   "displacement 'free' there.");
-        if (std::find(symmetry.begin(), symmetry.end(), side_of(load.id)) != symmetry.end() &&
+        if (has(symmetry, side_of(load.id)) &&
             !std::all_of(load.values.begin(), load.values.end(), [](const auto &value) {
               return is_zero(*value);
             }))
@@ -502,7 +444,7 @@ namespace PeriDeal
                   "the side '" + rate.name + "' has a displacement in " + "xyz"[c] +
                     " by 'Displacement', which contradicts it. Make one of the two 'free' there.");
     for (const VectorCondition &grip : displacement)
-      if (std::find(symmetry.begin(), symmetry.end(), side_of(grip.id)) != symmetry.end())
+      if (has(symmetry, side_of(grip.id)))
         error(
           "Displacement",
           "the side '" + name_of(side_of(grip.id)) +

@@ -20,110 +20,55 @@ namespace PeriDeal
   TimeControl::TimeControl()
     : SceneSection("Time")
   {
-    declare("End time", EntryType::number, "1", "time", "The run goes from time 0 to this time.");
-    declare(
-      "Steady",
-      EntryType::boolean,
-      "false",
-      "",
+    declare(end_time, "End time", "1", "time", Bounds::positive) =
+      "The run goes from time 0 to this time.";
+    declare(steady, "Steady", "false") =
       "Solve for the steady state; all other entries of this section are ignored then. So they are in elastic equilibrium, by any "
       "`Solver` in section `Elasticity` but `dynamics`, unless a load depends on t: then it is found at one time after the other. With `Temperature change = "
-      "computed` in that section all entries tell of the heat problem.");
-    declare(
-      "Stepper",
-      EntryType::choice,
-      "auto",
-      "",
+      "computed` in that section all entries tell of the heat problem.";
+    declare(stepper,
+            "Stepper",
+            "auto",
+            {"auto",
+             "euler",
+             "rk4",
+             "rkc2",
+             "chebyshev",
+             "crank nicolson",
+             "bdf2",
+             "sdirk2",
+             "verlet",
+             "newmark"}) =
       "Time integration: `auto` picks chebyshev (constant loads, symmetric operator), else rkc2, and "
       "sdirk2 for a consistent capacity. Of these three and bdf2 and crank nicolson the steps "
       "adapt to Tolerance; euler and rk4 have a fixed step. Motion (elasticity with `Solver = dynamics`): verlet (explicit; `auto`) and newmark "
-      "(implicit, average acceleration), both with a fixed step.",
-      {"auto",
-       "euler",
-       "rk4",
-       "rkc2",
-       "chebyshev",
-       "crank nicolson",
-       "bdf2",
-       "sdirk2",
-       "verlet",
-       "newmark"});
-    declare(
-      "Time step",
-      EntryType::text,
-      "auto",
-      "time",
+      "(implicit, average acceleration), both with a fixed step.";
+    declare_if_given(time_step, "Time step", "auto", "time", Bounds::positive) =
       "`auto` or a number; euler takes that very step. A step above the stability limit is "
       "refused; one of an implicit method whose iterations for T in `Material` do not converge is divided. Motion: `auto` is 0.8 of the limit of verlet, and 5 times that limit with newmark. Elastic equilibria under loads that depend on t: "
-      "the step between two of them, `auto` is a hundredth of End time.");
-    declare(
-      "Tolerance",
-      EntryType::number,
-      "1e-4",
-      "1",
-      "Relative accuracy in time of adaptive steppers, between 0 and 1. Not given: 1e-8 with `Heat of deformation` in section `Elasticity`.");
-  }
-
-
-  void TimeControl::parse()
-  {
-    steady    = boolean("Steady");
-    end_time  = positive_number("End time");
-    stepper   = choice_name("Stepper");
-    time_step = -1.;
-    if (text("Time step") != "auto")
-      {
-        if (text("Time step").find_first_of("0123456789") == std::string::npos)
-          error("Time step", "found '" + text("Time step") + "', needs 'auto' or a number.");
-        time_step = parse_number(text("Time step"), where("Time step"));
-        if (!(time_step > 0.))
-          error("Time step",
-                "found " + text("Time step") + ", needs 'auto' or a number greater than 0.");
-      }
-    tolerance = fraction("Tolerance");
+      "the step between two of them, `auto` is a hundredth of End time.";
+    declare(tolerance, "Tolerance", "1e-4", "1", Bounds::fraction) =
+      "Relative accuracy in time of adaptive steppers, between 0 and 1. Not given: 1e-8 with `Heat of deformation` in section `Elasticity`.";
   }
 
 
   SolverControlParameters::SolverControlParameters()
     : SceneSection("Solver")
   {
-    declare(
-      "Tolerance",
-      EntryType::number,
-      "1e-10",
-      "1",
-      "Relative residual at which solvers stop, between 0 and 1: the l2 norm of the residual over that of the start.");
-    declare(
-      "Maximum iterations",
-      EntryType::whole_number,
-      "1000",
-      "1",
+    declare(tolerance, "Tolerance", "1e-10", "1", Bounds::fraction) =
+      "Relative residual at which solvers stop, between 0 and 1: the l2 norm of the residual over that of the start.";
+    declare(max_iterations, "Maximum iterations", "1000", Bounds::one_or_more) =
       "A solver that needs more iterations ends the run with an error. Not given: 100000 with `Solver = conjugate gradients` in section `Elasticity`, "
-      "10000000 with dynamic relaxation.");
-    declare(
-      "Direct solver up to",
-      EntryType::whole_number,
-      "2000",
-      "1",
+      "10000000 with dynamic relaxation.";
+    declare(direct_up_to, "Direct solver up to", "2000", Bounds::one_or_more) =
       "Multigrid solves a level of at most so many unknowns directly. Smaller systems need one iteration, whose cost is that of a "
-      "factorization.");
-  }
-
-
-  void SolverControlParameters::parse()
-  {
-    tolerance      = fraction("Tolerance");
-    max_iterations = whole_number("Maximum iterations");
-    limit_given    = is_given("Maximum iterations");
-    refuse(max_iterations == 0, "Maximum iterations", "found 0, needs 1 or more.");
-    direct_up_to = whole_number("Direct solver up to");
-    refuse(direct_up_to == 0, "Direct solver up to", "found 0, needs 1 or more.");
+      "factorization.";
   }
 
 
   unsigned int SolverControlParameters::most_iterations(const ElasticSolver elastic_solver) const
   {
-    if (limit_given || elastic_solver == ElasticSolver::linear)
+    if (is_given("Maximum iterations") || elastic_solver == ElasticSolver::linear)
       return max_iterations;
     return elastic_solver == ElasticSolver::conjugate_gradients ? 100000 : 10000000;
   }
@@ -133,42 +78,19 @@ namespace PeriDeal
   OutputControl<dim>::OutputControl()
     : SceneSection("Output")
   {
-    declare("Fields",
-            EntryType::choices,
-            "vtu, hdf5",
-            "",
-            "File formats of the fields; `none` writes no fields.",
-            {"vtu", "hdf5", "none"});
-    declare(
-      "Write at",
-      EntryType::list,
-      "",
-      "time",
-      "Times of output, separated by commas; steps land on them. The end time is always written.");
-    declare(
-      "Write every",
-      EntryType::text,
-      "",
-      "time",
-      "Time between two outputs, instead of Write at. Fields are written at t = 0, too, for films.");
-    declare("Probes",
-            EntryType::list,
-            "",
-            "length",
-            "Points whose values go to probes.csv, separated by `;`.");
-    declare(
-      "Line",
-      EntryType::list,
-      "",
-      "length, length, 1",
-      "`start ; end ; number of points`: evenly spaced points whose values go to line.csv; those that lie in holes or otherwise outside the body are gaps (nan).");
-    declare(
-      "Grid",
-      EntryType::list,
-      "",
-      "1",
+    declare("Fields", EntryType::choices, "vtu, hdf5", "", {"vtu", "hdf5", "none"}) =
+      "File formats of the fields; `none` writes no fields.";
+    declare("Write at", EntryType::list, "", "time") =
+      "Times of output, separated by commas; steps land on them. The end time is always written.";
+    declare("Write every", EntryType::text, "", "time") =
+      "Time between two outputs, instead of Write at. Fields are written at t = 0, too, for films.";
+    declare("Probes", EntryType::list, "", "length") =
+      "Points whose values go to probes.csv, separated by `;`.";
+    declare("Line", EntryType::list, "", "length, length, 1") =
+      "`start ; end ; number of points`: evenly spaced points whose values go to line.csv; those that lie in holes or otherwise outside the body are gaps (nan).";
+    declare("Grid", EntryType::list, "", "1") =
       "Numbers of cells, one per direction: the values at the vertices of such a lattice over the box go to grid.csv. Several "
-      "lattices are separated by `;`.");
+      "lattices are separated by `;`.";
   }
 
 
@@ -259,6 +181,7 @@ namespace PeriDeal
   template <int dim>
   void OutputControl<dim>::parse(const double end_time, const bool steady)
   {
+    SceneSection::parse();
     const std::vector<unsigned int> formats = choice_indices("Fields");
     vtu                                     = false;
     hdf5                                    = false;
@@ -317,23 +240,157 @@ namespace PeriDeal
   }
 
 
-  Reference::Reference()
-    : SceneSection("Reference")
+  double seconds_of(const std::string &text)
   {
-    declare(
-      "Solution",
-      EntryType::text,
-      "",
-      "temperature",
-      "Exact solution to compare with: a formula of x, y, z, t, or a name (doc/theory.md lists them) "
-      "such as `bobaru 2012 example 1` or `lattice harmonic(1, 1)`. For elastic bodies a formula for each component of the displacement, "
-      "separated by commas, or a name such as `kirsch(1)` or `cantilever(1)`.");
+    const double seconds = number_with_unit(text, {{"s", 1.}, {"min", 60.}, {"h", 3600.}});
+    return number_with_unit(text, {{"", 1.}}) == 0. ? 0. : seconds;
   }
 
 
-  void Reference::parse()
+  CheckpointControl::CheckpointControl()
+    : SceneSection("Checkpoint")
   {
-    solution = text("Solution");
+    declare("Every", EntryType::text, "10 min") =
+      "Wall time between two checkpoints: a number and its unit, s, min or h. 0: none but those of `Times` and where the run is stopped. "
+      "`perideal run SCENE.prm --resume` goes on from the newest; a run that is complete removes its own.";
+    declare("Times", EntryType::list, "", "time") =
+      "Simulated times, separated by commas: a checkpoint is written, too, after the first step that reaches one. Steps do not land on them.";
+    declare(n_kept, "Keep", "2", Bounds::one_or_more) =
+      "So many of the newest checkpoints are kept, 1 or more. Each has the size of the vectors of "
+      "the run.";
+    declare("Wall time limit", EntryType::text) =
+      "The run stops with a checkpoint and exit status 3 before it has taken this much wall time, a number and its unit, s, min or h. Empty: no limit. "
+      "A run that is resumed has the whole of it again.";
+  }
+
+
+  double CheckpointControl::duration(const std::string &entry) const
+  {
+    const double seconds = seconds_of(text(entry));
+    if (seconds < 0.)
+      error(
+        entry,
+        "found '" + text(entry) +
+          "', needs a time of the clock with its unit, s, min or h, such as '90 s', '10 min' or '8 h'" +
+          (entry == "Every" ? ", or 0 for none." : "."));
+    return seconds;
+  }
+
+
+  void CheckpointControl::parse(const double end_time, const bool steady)
+  {
+    SceneSection::parse();
+    every           = duration("Every");
+    wall_time_limit = text("Wall time limit").empty() ? 0. : duration("Wall time limit");
+    if (!text("Wall time limit").empty() && !(wall_time_limit > 0.))
+      error("Wall time limit",
+            "found '" + text("Wall time limit") + "', needs more than 0, or nothing.");
+    times.clear();
+    const std::vector<std::string> pieces = split_list(text("Times"), ',');
+    if (steady && !pieces.empty())
+      error(
+        "Times",
+        "is given, but the scene is steady ('Steady' in section 'Time', or an elastic equilibrium): there are no times to reach.");
+    for (const std::string &piece : pieces)
+      {
+        const double time = parse_number(piece, where("Times"));
+        if (!(time > 0.) || time > end_time)
+          error("Times",
+                "the time " + piece +
+                  " is not between 0 and 'End time' in section 'Time', which is " +
+                  number_text(end_time) + ".");
+        times.push_back(time);
+      }
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+  }
+
+
+  GuardControl::GuardControl()
+    : SceneSection("Guards")
+  {
+    declare(action, "Action", "stop", {"stop", "warn", "off"}) =
+      "What a run does when its state becomes none (values that are not finite or grow without a cause, parts that have flown off): `stop` ends it there with the "
+      "place and the cause, exit status 1 and the status `diverged`; `warn` says so in a note, once for each kind, and goes on, also where a solver finds energy "
+      "from nowhere, a step above its limit or a body inside out; `off` goes on, too, and says nothing. "
+      "Values that are not finite, a `Time step` above its limit from the start and what solvers cannot compute are errors in any case.";
+  }
+
+
+  double bytes_of(const std::string &text)
+  {
+    const double size =
+      number_with_unit(text, {{"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}});
+    return size > 0. ? size : -1.;
+  }
+
+
+  AccuracyControl::AccuracyControl()
+    : SceneSection("Accuracy")
+  {
+    declare(tolerance, "Tolerance", "1e-2", "1", Bounds::positive) =
+      "With `Models = auto`: the error that the result may have, estimated. Of values relative to their range over the body (largest minus smallest; "
+      "of a vector the component with the largest range), of a flow or a stress intensity relative to itself.";
+    declare("Measure", EntryType::text, "field") =
+      "In what the error is measured: `field`, the root mean square over the body; `probes`, the largest at the points of `Probes`; `flow: SIDE`, what "
+      "enters through a side; `stress intensity`, the largest at the ends of cracks (elasticity in 2D).";
+    declare_if_given(budget, "Budget", "", "s", Bounds::positive.saying("seconds, more than 0")) =
+      "Wall time in seconds within which a result has to be there, the best until then. Empty: "
+      "no limit.";
+    declare("Memory", EntryType::text) =
+      "Memory that may be taken, with its unit (4 GB). Empty: what the machine has free.";
+    parse();
+  }
+
+
+  void AccuracyControl::parse()
+  {
+    SceneSection::parse();
+    refuse(tolerance > 0.5,
+           "Tolerance",
+           "found " + text("Tolerance") + ", needs a number between 1e-8 and 0.5.");
+    refuse(
+      tolerance < 1e-8,
+      "Tolerance",
+      "found " + text("Tolerance") +
+        ", which rounding and the linear solver do not allow; needs a number between 1e-8 and 0.5.");
+    const std::string given = trimmed(text("Measure")), flow = "flow:";
+    side.clear();
+    if (given == "field")
+      measure = AccuracyMeasure::field;
+    else if (given == "probes")
+      measure = AccuracyMeasure::probes;
+    else if (given == "stress intensity")
+      measure = AccuracyMeasure::stress_intensity;
+    else if (given.compare(0, flow.size(), flow) == 0)
+      {
+        measure = AccuracyMeasure::flow;
+        side    = trimmed(given.substr(flow.size()));
+        refuse(side.empty(), "Measure", "found '" + given + "', needs a side behind 'flow:'.");
+      }
+    else
+      error("Measure",
+            "found '" + given + "', needs field, probes, flow: SIDE or stress intensity." +
+              did_you_mean(given, {"field", "probes", "flow: SIDE", "stress intensity"}));
+    memory = -1.;
+    if (!text("Memory").empty())
+      {
+        memory = bytes_of(text("Memory"));
+        refuse(memory < 0.,
+               "Memory",
+               "found '" + text("Memory") +
+                 "', needs a size with its unit: kB, MB, GB or TB, as in '4 GB'.");
+      }
+  }
+
+
+  Reference::Reference()
+    : SceneSection("Reference")
+  {
+    declare(solution, "Solution", "", {}, "temperature") =
+      "Exact solution to compare with: a formula of x, y, z, t, or a name (doc/theory.md lists them) "
+      "such as `bobaru 2012 example 1` or `lattice harmonic(1, 1)`. For elastic bodies a formula for each component of the displacement, "
+      "separated by commas, or a name such as `kirsch(1)` or `cantilever(1)`.";
   }
 
 
@@ -342,44 +399,19 @@ namespace PeriDeal
   {
     const std::string label =
       " Labels for reports only: values are in any consistent set of units.";
-    declare("Length", EntryType::text, "m", "", "Name of the unit of length." + label);
-    declare("Time", EntryType::text, "s", "", "Name of the unit of time." + label);
-    declare("Temperature", EntryType::text, "K", "", "Name of the unit of temperature." + label);
-    declare("Potential",
-            EntryType::text,
-            "V",
-            "",
-            "Name of the unit of the electric potential." + label);
-    declare(
-      "Force",
-      EntryType::text,
-      "N",
-      "",
+    declare(length, "Length", "m")           = "Name of the unit of length." + label;
+    declare(time, "Time", "s")               = "Name of the unit of time." + label;
+    declare(temperature, "Temperature", "K") = "Name of the unit of temperature." + label;
+    declare(potential, "Potential", "V") = "Name of the unit of the electric potential." + label;
+    declare(force, "Force", "N") =
       "Name of the unit of force, from which those of stresses, energies and stress intensities follow." +
-        label);
-    declare(
-      "Energy",
-      EntryType::text,
-      "",
-      "",
+      label;
+    declare(energy, "Energy", "") =
       "Name of the unit of energy. Empty: in elasticity the product of force and length; of heat none is shown, "
       "since diffusivities may have been given in place of conductivities." +
-        label);
-    declare("Mass", EntryType::text, "kg", "", "Name of the unit of the mass of moisture." + label);
-    declare("Current", EntryType::text, "A", "", "Name of the unit of electric current." + label);
-  }
-
-
-  void Units::parse()
-  {
-    length      = text("Length");
-    time        = text("Time");
-    temperature = text("Temperature");
-    potential   = text("Potential");
-    force       = text("Force");
-    energy      = text("Energy");
-    mass        = text("Mass");
-    current     = text("Current");
+      label;
+    declare(mass, "Mass", "kg")      = "Name of the unit of the mass of moisture." + label;
+    declare(current, "Current", "A") = "Name of the unit of electric current." + label;
   }
 
 

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/coupling_control.h>
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 namespace PeriDeal
@@ -10,60 +9,32 @@ namespace PeriDeal
   CouplingControl::CouplingControl()
     : SceneSection("Coupling")
   {
-    declare(
-      "Scheme",
-      EntryType::choice,
-      "exchange",
-      "",
+    declare(scheme, "Scheme", "exchange", {"exchange", "splice", "blending"}) =
       "How the model `coupled` joins peridynamics in the zone with finite elements elsewhere: each bond in exchange for what "
       "the elements conduct along it (symmetric, exact for linear fields); rows of either model side by side (not symmetric); or "
-      "both energies, weighted over the overlap. With elasticity the bonds of `exchange` carry what pairs of nodes can, those of the others are state-based.",
-      {"exchange", "splice", "blending"});
-    declare(
-      "Zone",
-      EntryType::text,
-      "auto",
-      "",
+      "both energies, weighted over the overlap. With elasticity the bonds of `exchange` carry what pairs of nodes can, those of the others are state-based.";
+    declare("Zone", EntryType::text, "auto") =
       "Where bonds are: `cracks: c`, up to c horizons from a crack; `everywhere`; or a formula of "
       "x, y, z, in the zone where it is greater than 0. `adaptive`: as `cracks: 1`, on a mesh that follows the cracks and the solution as the run goes "
       "on (`Coarsening` in section `Domain` says how large its cells may be). `follow`, with elasticity and bonds that break: one horizon (with `blending` two) around cracks, broken bonds, "
-      "and wherever the body is stretched by more than `Zone share` of the critical stretch. `auto` is that where bonds may break, else `cracks: 1`.");
-    declare(
-      "Zone share",
-      EntryType::number,
-      "0.5",
-      "1",
-      "With `Zone = follow`: bonds appear where the largest principal strain of a cell, thermal strain taken off, reaches this share of the critical stretch.");
-    declare(
-      "Adaptive tolerance",
-      EntryType::number,
-      "0.02",
-      "1",
+      "and wherever the body is stretched by more than `Zone share` of the critical stretch. `auto` is that where bonds may break, else `cracks: 1`.";
+    declare(zone_share, "Zone share", "0.5", "1", Bounds::positive) =
+      "With `Zone = follow`: bonds appear where the largest principal strain of a cell, thermal strain taken off, reaches this share of the critical stretch.";
+    declare(adaptive_tolerance, "Adaptive tolerance", "0.02", "1", Bounds::positive) =
       "With `Zone = adaptive`: cells are refined and merged until the recovered flux shows this relative error in the energy norm, as far as "
-      "cells of lattice size reach it.");
-    declare(
-      "Overlap",
-      EntryType::number,
-      "0",
-      "1",
-      "With `splice` and `blending`: width, in horizons, over which one model passes into the other, outwards from the zone's edge.");
-    declare(
-      "Certificate",
-      EntryType::boolean,
-      "true",
-      "",
+      "cells of lattice size reach it.";
+    declare(overlap, "Overlap", "0", "1", Bounds::not_negative.saying("0 or more horizons")) =
+      "With `splice` and `blending`: width, in horizons, over which one model passes into the other, outwards from the zone's edge.";
+    declare(certificate, "Certificate", "true") =
       "Examine the coupling before the run: linear, quadratic and cubic patch tests, symmetry, lowest eigenvalue, with elasticity the balance of forces and moments. Costs about as "
-      "much as three steady solutions.");
+      "much as three steady solutions.";
     parse();
   }
 
 
   void CouplingControl::parse(const bool bonds_break)
   {
-    scheme             = choice<CouplingScheme>("Scheme");
-    overlap            = number("Overlap");
-    certificate        = boolean("Certificate");
-    adaptive_tolerance = positive_number("Adaptive tolerance");
+    SceneSection::parse();
     parse_zone();
     if (bonds_break && !splices() && text("Zone") == "auto")
       zone = ZoneKind::follow;
@@ -71,18 +42,16 @@ namespace PeriDeal
       width = 2.; // of a bond, and of the families at its ends
     if (is_given("Adaptive tolerance") && !is_adaptive())
       error("Adaptive tolerance", "is for 'Zone = adaptive'; 'Zone' is '" + zone_text() + "'.");
-    zone_share = positive_number("Zone share");
     refuse(zone_share > 0.9,
            "Zone share",
            "found " + text("Zone share") +
              ", needs more than 0 and at most 0.9: bonds have to be there before they break.");
     if (is_given("Zone share") && !follows_stretches())
       error("Zone share", "is for 'Zone = follow'; 'Zone' is '" + zone_text() + "'.");
-    refuse(overlap < 0., "Overlap", "found " + text("Overlap") + ", needs 0 or more horizons.");
     if (is_adaptive() && !exchanges())
       error("Zone",
-            "'adaptive' changes the mesh while the run goes on, which 'Scheme = " +
-              choice_name("Scheme") + "' cannot follow. Use 'exchange', or 'cracks: 1'.");
+            "'adaptive' changes the mesh while the run goes on, which 'Scheme = " + text("Scheme") +
+              "' cannot follow. Use 'exchange', or 'cracks: 1'.");
     if (overlap > 0. && exchanges())
       error("Overlap", "is for 'Scheme' = splice and blending; 'exchange' has none.");
   }
@@ -96,7 +65,7 @@ namespace PeriDeal
 
   std::string CouplingControl::scheme_text() const
   {
-    return choice_name("Scheme");
+    return text("Scheme");
   }
 
 
@@ -134,9 +103,8 @@ namespace PeriDeal
       error("Zone", "found '" + given + "'; did you mean '" + near + "'?");
     else
       {
-        const KnownVariables known("x, y, z");
         zone    = ZoneKind::formula;
-        formula = Expression(given, where("Zone"));
+        formula = Expression(given, where("Zone"), "x, y, z");
         if (formula.depends_on_time())
           error("Zone", "found '" + given + "'; a formula of the zone may not depend on t.");
       }

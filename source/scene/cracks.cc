@@ -6,7 +6,6 @@
 #include <perideal/base/clipped.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/cracks.h>
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -119,61 +118,54 @@ namespace PeriDeal
   Cracks<dim>::Cracks()
     : SceneSection("Cracks")
   {
-    declare("Segments",
-            EntryType::list,
-            "",
-            "length",
-            "2D: `start ; end ; start ; end ; ...`, two points a crack.");
-    declare(
-      "Polygons",
-      EntryType::list,
-      "",
-      "length",
+    declare("Segments", EntryType::list, "", "length") =
+      "2D: `start ; end ; start ; end ; ...`, two points a crack.";
+    declare("Polygons", EntryType::list, "", "length") =
       "3D: `corner ; corner ; corner ...`, the next polygon after `|`. Each must be planar. A penny-shaped crack is `disc: centre, normal, radius`, seven numbers: a regular "
-      "polygon of 96 corners with the area of the circle, seen counterclockwise from where the normal points to.");
-    declare(
-      "Interfaces",
-      EntryType::list,
-      "",
-      "",
+      "polygon of 96 corners with the area of the circle, seen counterclockwise from where the normal points to.";
+    declare("Interfaces", EntryType::list) =
       "Of a mesh file: lines (in 3D surfaces) between its cells that are cracks, by the names "
       "or numbers of their physical groups, several separated by `;`. They are cut into the "
-      "mesh as with `Mesh = faces`.");
-    declare(
-      "Mesh",
-      EntryType::choice,
-      "auto",
-      "",
+      "mesh as with `Mesh = faces`.";
+    declare(mesh, "Mesh", "auto", {"pairs", "faces", "removed", "auto"}) =
       "What finite elements and the mesh do with a crack: in cut cells the conductances of the "
       "node "
       "pairs that the crack does not separate; the crack lies on cell faces, which are doubled; "
-      "or cut cells conduct nothing. `auto`: pairs; with `Physics = elasticity`, where pairs are not defined, faces for cracks in 2D that run along the axes and lie still, where bonds do not break and faces do not press on each other, else removed.",
-      {"pairs", "faces", "removed", "auto"});
-    declare(
-      "Nodes on cracks",
-      EntryType::choice,
-      "avoid",
-      "",
+      "or cut cells conduct nothing. `auto`: pairs; with `Physics = elasticity`, where pairs are not defined, faces for cracks in 2D that run along the axes and lie still, where bonds do not break and faces do not press on each other, else removed.";
+    declare(nodes_on_cracks, "Nodes on cracks", "avoid", {"avoid", "left"}) =
       "A crack that runs along a row of nodes of the lattice: `avoid` takes up to three `Cells` more or fewer across it, with which it runs "
       "between rows; a note says so. `left`: nodes exactly on a crack belong to its left side, so that it acts half a cell beside its "
-      "place. Meshes from files, images and lattices with `Coarsening` or `Extra layers` keep their cells.",
-      {"avoid", "left"});
-    declare(
-      "Transmission",
-      EntryType::formula,
-      "0",
-      "1",
+      "place. Meshes from files, images and lattices with `Coarsening` or `Extra layers` keep their cells.";
+    declare("Transmission", EntryType::formula, "0", "1") =
       "Fraction that a cut bond still conducts, from 0 (insulated) to 1 (intact), or a formula of t: a crack that closes "
       "conducts again. A contact "
       "conductance H corresponds to t/(1-t) = H delta/(C kappa), C about 1.9 (horizon ratio "
       "2) to 2.4 "
-      "(horizon ratio 3).");
-    declare("Contact conductance",
-            EntryType::text,
-            "",
-            "power/(area temperature)",
-            "Heat flux through the crack per difference of temperature, instead of Transmission.");
-    declare_growth();
+      "(horizon ratio 3).";
+    declare_if_given(contact_conductance,
+                     "Contact conductance",
+                     "",
+                     "power/(area temperature)",
+                     Bounds::not_negative.saying("a number of 0 or more")) =
+      "Heat flux through the crack per difference of temperature, instead of Transmission.";
+    declare("Growth", EntryType::list, "", "time, length/time") =
+      "Ends that move: `end point: start time, velocity`, and after another comma the time at which it stops; several "
+      "separated by `;`. End points are counted from 1 through Segments, in 3D corners through Polygons, whose corners may move outwards "
+      "in their plane. What has been cut stays cut. Elastic bodies find their equilibrium with the cracks as they are then; in motion cracks "
+      "grow between two steps. Nodes join the zone `cracks` of `Models = coupled` as a crack comes near them.";
+    declare("Paths", EntryType::list, "", "time, length") =
+      "Ends that move from point to point: `end point: time, position | time, position | ...`; several separated by "
+      "`;`. The first position is that of the end itself, which rests until then.";
+    declare(through_tips, "Bonds through tips", "auto", {"auto", "cut", "keep", "in part"}) =
+      "Whether a bond that only touches a crack's tip is cut. `auto`: not with `Surface correction = energy`, else it is; each "
+      "was measured to be the more accurate there. With `Physics = elasticity` bonds of `Scheme = exchange` without crack scaling are "
+      "kept, all others cut. `in part`: bonds and removed cells about a tip lose a part of their stiffness, so that the crack is as long as "
+      "given wherever in its cell its tip lies; with `Physics = elasticity` in 2D only, not on `faces` and not where cracks grow, heal or bonds break. "
+      "Finite elements for diffusion always cut such pairs.";
+    declare_if_given(growth_step, "Growth step", "", "length", Bounds::length) =
+      "Farthest that a tip advances between two changes of the bonds; empty: a quarter of a node spacing. Bonds are cut "
+      "too early or too late by at most the time that the tip needs for half of it.";
+    parse();
   }
 
 
@@ -232,11 +224,9 @@ namespace PeriDeal
     tips.clear();
     parse_segments();
     parse_polygons();
-    mesh = choice<CrackMesh>("Mesh");
+    SceneSection::parse();
     if (mesh == CrackMesh::automatic && physics != Physics::elasticity)
       mesh = CrackMesh::pairs; // of solids the scene decides (lay_cracks_on_faces())
-    through_tips    = choice<ThroughTips>("Bonds through tips");
-    nodes_on_cracks = choice<NodesOnCracks>("Nodes on cracks");
     parse_conductance();
     parse_growth();
     parse_paths();
@@ -272,8 +262,7 @@ namespace PeriDeal
   template <int dim>
   void Cracks<dim>::parse_conductance()
   {
-    const KnownVariables known("t");
-    transmission = Expression(text("Transmission"), where("Transmission"));
+    transmission = Expression(text("Transmission"), where("Transmission"), "t");
     if (transmission.depends_on_position())
       error("Transmission",
             "found '" + text("Transmission") + "'; it may change with the time t only.");
@@ -283,15 +272,9 @@ namespace PeriDeal
             "found " + text("Transmission") +
               (transmission.is_constant() ? "" : ", which is " + number_text(now) + " at t = 0") +
               ", needs a number from 0 to 1.");
-    contact_conductance = -1.;
-    if (text("Contact conductance").empty())
-      return;
-    if (!transmission.is_constant() || now != 0.)
-      error("Contact conductance", "'Transmission' is given, too: give one of the two.");
-    contact_conductance = parse_number(text("Contact conductance"), where("Contact conductance"));
-    if (contact_conductance < 0.)
-      error("Contact conductance",
-            "found " + text("Contact conductance") + ", needs a number of 0 or more.");
+    refuse(contact_conductance >= 0. && (!transmission.is_constant() || now != 0.),
+           "Contact conductance",
+           "'Transmission' is given, too: give one of the two.");
   }
 
 
@@ -348,61 +331,11 @@ namespace PeriDeal
 
   namespace
   {
-    template <int dim>
-    std::string place(const Point<dim> &p)
-    {
-      std::string text = "(";
-      for (unsigned int d = 0; d < dim; ++d)
-        text += (d > 0 ? ", " : "") + number_text(p[d]);
-      return text + ")";
-    }
-
-
     const char *end_or_corner(const int dim)
     {
       return dim == 3 ? "corner" : "end point";
     }
   } // namespace
-
-
-  template <int dim>
-  void Cracks<dim>::declare_growth()
-  {
-    declare(
-      "Growth",
-      EntryType::list,
-      "",
-      "time, length/time",
-      "Ends that move: `end point: start time, velocity`, and after another comma the time at which it stops; several "
-      "separated by `;`. End points are counted from 1 through Segments, in 3D corners through Polygons, whose corners may move outwards "
-      "in their plane. What has been cut stays cut. Elastic bodies find their equilibrium with the cracks as they are then; in motion cracks "
-      "grow between two steps. Nodes join the zone `cracks` of `Models = coupled` as a crack comes near them.");
-    declare(
-      "Paths",
-      EntryType::list,
-      "",
-      "time, length",
-      "Ends that move from point to point: `end point: time, position | time, position | ...`; several separated by "
-      "`;`. The first position is that of the end itself, which rests until then.");
-    declare(
-      "Bonds through tips",
-      EntryType::choice,
-      "auto",
-      "",
-      "Whether a bond that only touches a crack's tip is cut. `auto`: not with `Surface correction = energy`, else it is; each "
-      "was measured to be the more accurate there. With `Physics = elasticity` bonds of `Scheme = exchange` without crack scaling are "
-      "kept, all others cut. `in part`: bonds and removed cells about a tip lose a part of their stiffness, so that the crack is as long as "
-      "given wherever in its cell its tip lies; with `Physics = elasticity` in 2D only, not on `faces` and not where cracks grow, heal or bonds break. "
-      "Finite elements for diffusion always cut such pairs.",
-      {"auto", "cut", "keep", "in part"});
-    declare(
-      "Growth step",
-      EntryType::text,
-      "",
-      "length",
-      "Farthest that a tip advances between two changes of the bonds; empty: a quarter of a node spacing. Bonds are cut "
-      "too early or too late by at most the time that the tip needs for half of it.");
-  }
 
 
   template <int dim>
@@ -435,14 +368,6 @@ namespace PeriDeal
   template <int dim>
   void Cracks<dim>::parse_growth()
   {
-    growth_step = -1.;
-    if (!text("Growth step").empty())
-      {
-        growth_step = parse_number(text("Growth step"), where("Growth step"));
-        if (!(growth_step > 0.))
-          error("Growth step",
-                "found " + text("Growth step") + ", needs a length greater than 0 (or nothing).");
-      }
     for (const std::string &item : split_list(text("Growth"), ';'))
       {
         const auto [number, value] = name_and_value(item, where("Growth"));
@@ -508,7 +433,8 @@ namespace PeriDeal
             if (tip.path.empty() && p.distance(start) > 1e-9 * (1. + start.norm()))
               error("Paths",
                     "the path of " + std::string(end_or_corner(dim)) + " " + number +
-                      " begins at " + place(p) + ", but that lies at " + place(start) + ".");
+                      " begins at " + point_text(p) + ", but that lies at " + point_text(start) +
+                      ".");
             if (x[0] < 0. || (!tip.path.empty() && !(x[0] > tip.path.back().first)))
               error("Paths",
                     "the times of " + std::string(end_or_corner(dim)) + " " + number +
@@ -573,7 +499,7 @@ namespace PeriDeal
                 return stop.second == turn;
               }))
             tip_error(tip,
-                      "turns back at " + place(turn) +
+                      "turns back at " + point_text(turn) +
                         " along its own crack; cracks grow, they do not heal.");
       }
   }
@@ -687,7 +613,7 @@ namespace PeriDeal
             tip_error(
               tip,
               "has left the body at t = " + number_text(t) + ", where it is at " +
-                place(tip.at(t)) +
+                point_text(tip.at(t)) +
                 ". Let it stop before: a fourth number in 'Growth' (3D: a fifth) is the time at which it does.");
       }
   }

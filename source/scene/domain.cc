@@ -9,7 +9,6 @@
 #include <perideal/base/user_error.h>
 #include <perideal/scene/boundary_conditions.h>
 #include <perideal/scene/domain.h>
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -66,96 +65,65 @@ namespace PeriDeal
   Domain<dim>::Domain()
     : SceneSection("Domain")
   {
-    declare(
-      "Shape",
-      EntryType::choice,
-      "box",
-      "",
+    declare(shape, "Shape", "box", {"box", "plate with hole", "mesh file", "image"}) =
       "The body: a box of equal cells, such a box with a hole, a mesh read from a file, or the pixels of an image (in two "
-      "dimensions).",
-      {"box", "plate with hole", "mesh file", "image"});
-    declare("Lower corner",
-            EntryType::list,
-            repeated<dim>("0"),
-            "length",
-            "The corner of the box with the smallest coordinates, one number per direction.");
-    declare("Upper corner",
-            EntryType::list,
-            repeated<dim>("1"),
-            "length",
-            "The corner of the box with the largest coordinates, one number per direction.");
-    declare("Cells",
-            EntryType::list,
-            repeated<dim>("20"),
-            "1",
-            "Number of cells of the box, one number per direction.");
-    declare("Node spacing",
-            EntryType::text,
-            "",
-            "length",
-            "Edge length of the cells, instead of Cells. It must divide every edge of the box.");
-    declare(
-      "Coarsening",
-      EntryType::whole_number,
-      "0",
-      "1",
+      "dimensions).";
+    declare("Lower corner", EntryType::list, repeated<dim>("0"), "length") =
+      "The corner of the box with the smallest coordinates, one number per direction.";
+    declare("Upper corner", EntryType::list, repeated<dim>("1"), "length") =
+      "The corner of the box with the largest coordinates, one number per direction.";
+    declare("Cells", EntryType::list, repeated<dim>("20"), "1") =
+      "Number of cells of the box, one number per direction.";
+    declare("Node spacing", EntryType::text, "", "length") =
+      "Edge length of the cells, instead of Cells. It must divide every edge of the box.";
+    declare(coarsening.times, "Coarsening", "0") =
       "How often cells may be merged, two in each direction, away from where they have to stay as fine as `Cells` says: a graded mesh "
-      "with hanging nodes. `Cells` must allow as many halvings. Only for a box, and not for peridynamics alone.");
-    declare(
-      "Fine where",
-      EntryType::text,
-      "auto",
-      "",
+      "with hanging nodes. `Cells` must allow as many halvings. Only for a box, and not for peridynamics alone.";
+    declare("Fine where", EntryType::text, "auto") =
       "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0, and in the zone of section `Coupling` if "
       "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. `crack ends`: at the ends of cracks, in three dimensions their "
-      "edges, and in that zone likewise. Beyond, there are at least two cells of each size.");
-    declare(
-      "Nodes",
-      EntryType::choice,
-      "auto",
-      "",
+      "edges, and in that zone likewise. Beyond, there are at least two cells of each size.";
+    declare("Nodes", EntryType::choice, "auto", "", {"vertices", "cell centers", "auto"}) =
       "Where the peridynamic nodes sit: `auto` is cell centers with `Shape = image`, else vertices. Finite elements use the vertices "
-      "in any case.",
-      {"vertices", "cell centers", "auto"});
-    declare(
-      "Hole center",
-      EntryType::list,
-      repeated<dim>("0.5"),
-      "length",
+      "in any case.";
+    declare("Hole center", EntryType::list, repeated<dim>("0.5"), "length") =
       "Plate with a hole: its centre. Lattice cells whose centre is nearer than the radius do "
-      "not exist. In 3D the hole is a bore along z.");
-    declare(
-      "Holes",
-      EntryType::list,
-      "",
-      "length",
+      "not exist. In 3D the hole is a bore along z.";
+    declare("Holes", EntryType::list, "", "length") =
       "Holes in a box or in a plate with a hole, several separated by `;`: `circle: x, y, radius`, `rectangle: x, y, x, y` (its lower left and its upper right corner) and "
-      "`polygon: x, y, x, y, ...` (its corners). Lattice cells whose centre lies in one do not exist, nor those that a thin polygon needs to be open from end to end, a cell wide; all their rims are the side `hole`. In 3D they are bores along z.");
-    declare("Hole radius",
-            EntryType::number,
-            "0.25",
-            "length",
-            "Radius of a circular hole, half the edge of a square one.");
-    declare("Hole shape",
-            EntryType::choice,
-            "circle",
-            "",
-            "Shape of the hole.",
-            {"circle", "square"});
-    declare("Hole angle",
-            EntryType::number,
-            "0",
-            "degrees",
-            "A square hole is turned by this angle, counterclockwise.");
-    declare(
-      "Mesh file",
-      EntryType::text,
-      "",
-      "",
+      "`polygon: x, y, x, y, ...` (its corners). Lattice cells whose centre lies in one do not exist, nor those that a thin polygon needs to be open from end to end, a cell wide; all their rims are the side `hole`. In 3D they are bores along z.";
+    declare(holes.radius, "Hole radius", "0.25", "length") =
+      "Radius of a circular hole, half the edge of a square one.";
+    declare(holes.shape, "Hole shape", "circle", {"circle", "square"}) = "Shape of the hole.";
+    declare(holes.angle, "Hole angle", "0", "degrees") =
+      "A square hole is turned by this angle, counterclockwise.";
+    declare(mesh_file, "Mesh file", "") =
       "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory or else to the "
-      "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.");
-    declare_image();
-    declare_extra_layers();
+      "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.";
+    declare("Image", EntryType::text) =
+      "With `Shape = image`: a PNG, PGM or PPM file, relative to the working directory or else to the folder of the scene file. "
+      "Its top row is the largest y.";
+    declare("Image colors", EntryType::list) =
+      "What the pixels are: `name: colour`, several separated by `;`. A colour is `rgb(255,0,0)`, one grey `128`, or a range of "
+      "greys `40..140` (0.299 red + 0.587 green + 0.114 blue), which counts where no colour is near. A name may come several times. Names are "
+      "phases of the material, as in section `Material/Phases`; the name `void` is where there is none, and so are transparent pixels.";
+    declare("Color tolerance", EntryType::number, "30", "1") =
+      "How far a pixel may be from the nearest colour of `Image colors`, as a distance in (red, green, blue) from 0 to 441.";
+    declare("Pixels per cell", EntryType::whole_number, "1", "1") =
+      "Edge of the block of pixels that is one cell, of the phase of its middle pixel (of an even number, that right of and below the "
+      "middle). Incomplete blocks at the right and lower edge are left out.";
+    declare("Cells per pixel", EntryType::whole_number, "1", "1") =
+      "Edge of the block of cells that one pixel, or one block of pixels, is divided into.";
+    declare("Pixel size", EntryType::text, "", "length") =
+      "Edge of a pixel; the image then begins at `Lower corner`. Empty: it fills the box between `Lower corner` and `Upper corner`.";
+    declare(islands.rule, "Islands", "error", {"error", "remove", "pin"}) =
+      "What to do with parts of an image that no side holds, where the solution would not be determined: an error that names them; "
+      "`remove` them; or `pin` each at two of its points (elasticity).";
+    declare("Extra layers", EntryType::list, "0", "1") =
+      "Rows of cells that are added outside the sides of the body and left out of the results (elasticity): a number for all sides, or "
+      "`left: 10; right: 10`. Boundary conditions act on their outer sides; forces on sides and energies are those of the whole.";
+    declare("Extra layers phase", EntryType::text) =
+      "With `Shape = image`: the phase of the extra layers. Empty: that of the nearest cell of the image.";
     parse();
   }
 
@@ -208,6 +176,13 @@ namespace PeriDeal
             "gives " + number_text(n_nodes) + " nodes, more than the " +
               std::to_string(std::numeric_limits<types::global_dof_index>::max()) +
               " that this deal.II can number.");
+  }
+
+
+  template <int dim>
+  unsigned int Domain<dim>::count(const std::string &entry) const
+  {
+    return parse_whole_number(text(entry), where(entry));
   }
 
 
@@ -283,8 +258,7 @@ namespace PeriDeal
         }
     if (!coarsening.by_formula)
       return;
-    const KnownVariables known("x, y, z");
-    coarsening.fine = Expression(text("Fine where"), where("Fine where"));
+    coarsening.fine = Expression(text("Fine where"), where("Fine where"), "x, y, z");
     if (coarsening.fine.depends_on_time())
       error("Fine where", "found '" + text("Fine where") + "'; the formula may not depend on t.");
   }
@@ -302,13 +276,12 @@ namespace PeriDeal
         "found '" + text("Hole center") + "', the centres of " + std::to_string(n_holes) +
           " holes: it is that of one. Several go into 'Holes', 'circle: x, y, radius ; circle: ...'.");
     holes.center = parse_point<dim>(text("Hole center"), where("Hole center"));
-    holes.radius = number("Hole radius");
-    holes.shape  = choice<HoleShape>("Hole shape");
-    holes.angle  = number("Hole angle");
     if (shape != Shape::plate_with_hole)
       return;
     refuse(dim == 1, "Shape", "a plate with a hole needs 'Dimension' 2 or 3.");
-    positive_number("Hole radius");
+    refuse(!(holes.radius > 0.),
+           "Hole radius",
+           "found " + text("Hole radius") + ", needs a number greater than 0.");
     if (!contains(holes.center))
       error("Hole center", "(" + text("Hole center") + ") lies outside the body.");
   }
@@ -370,10 +343,10 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse()
   {
-    shape = choice<Shape>("Shape");
-    nodes = choice_name("Nodes") != "auto" ? choice<NodePlacement>("Nodes") :
-            shape == Shape::image          ? NodePlacement::cell_centers :
-                                             NodePlacement::vertices;
+    SceneSection::parse();
+    nodes = text("Nodes") == "cell centers" || (text("Nodes") == "auto" && is_image()) ?
+              NodePlacement::cell_centers :
+              NodePlacement::vertices;
     lower = parse_point<dim>(text("Lower corner"), where("Lower corner"));
     upper = parse_point<dim>(text("Upper corner"), where("Upper corner"));
     image.reset();
@@ -395,9 +368,7 @@ namespace PeriDeal
     parse_hole();
     holes.has_one = shape == Shape::plate_with_hole;
     parse_listed_holes();
-    coarsening.times = whole_number("Coarsening");
     parse_fine_part();
-    mesh_file = text("Mesh file");
     if (shape == Shape::mesh_file && mesh_file.empty() && !own_mesh)
       error("Mesh file", "is empty, but 'Shape' is 'mesh file'.");
     if (shape != Shape::mesh_file && !mesh_file.empty())
@@ -435,59 +406,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Domain<dim>::declare_image()
-  {
-    declare(
-      "Image",
-      EntryType::text,
-      "",
-      "",
-      "With `Shape = image`: a PNG, PGM or PPM file, relative to the working directory or else to the folder of the scene file. "
-      "Its top row is the largest y.");
-    declare(
-      "Image colors",
-      EntryType::list,
-      "",
-      "",
-      "What the pixels are: `name: colour`, several separated by `;`. A colour is `rgb(255,0,0)`, one grey `128`, or a range of "
-      "greys `40..140` (0.299 red + 0.587 green + 0.114 blue), which counts where no colour is near. A name may come several times. Names are "
-      "phases of the material, as in section `Material/Phases`; the name `void` is where there is none, and so are transparent pixels.");
-    declare(
-      "Color tolerance",
-      EntryType::number,
-      "30",
-      "1",
-      "How far a pixel may be from the nearest colour of `Image colors`, as a distance in (red, green, blue) from 0 to 441.");
-    declare(
-      "Pixels per cell",
-      EntryType::whole_number,
-      "1",
-      "1",
-      "Edge of the block of pixels that is one cell, of the phase of its middle pixel (of an even number, that right of and below the "
-      "middle). Incomplete blocks at the right and lower edge are left out.");
-    declare("Cells per pixel",
-            EntryType::whole_number,
-            "1",
-            "1",
-            "Edge of the block of cells that one pixel, or one block of pixels, is divided into.");
-    declare(
-      "Pixel size",
-      EntryType::text,
-      "",
-      "length",
-      "Edge of a pixel; the image then begins at `Lower corner`. Empty: it fills the box between `Lower corner` and `Upper corner`.");
-    declare(
-      "Islands",
-      EntryType::choice,
-      "error",
-      "",
-      "What to do with parts of an image that no side holds, where the solution would not be determined: an error that names them; "
-      "`remove` them; or `pin` each at two of its points (elasticity).",
-      {"error", "remove", "pin"});
-  }
-
-
-  template <int dim>
   void Domain<dim>::refuse_image_entries() const
   {
     for (const std::string entry : {"Image",
@@ -512,7 +430,7 @@ namespace PeriDeal
       error("Pixel size", "found " + text("Pixel size") + ", needs a length greater than 0.");
     if (is_given("Upper corner"))
       error("Pixel size", "'Upper corner' is given, too: give one of the two.");
-    const double cell = size * whole_number("Pixels per cell") / whole_number("Cells per pixel");
+    const double cell = size * count("Pixels per cell") / count("Cells per pixel");
     for (unsigned int d = 0; d < dim; ++d)
       upper[d] = lower[d] + cell * cells[d];
   }
@@ -528,11 +446,11 @@ namespace PeriDeal
           entry,
           "is given, but with 'Shape = image' the pixels are the cells; use 'Pixels per cell' or 'Cells per pixel'.");
     refuse(text("Image").empty(), "Image", "is empty, but 'Shape' is 'image'.");
-    const double tolerance = number("Color tolerance");
+    const double tolerance = parse_number(text("Color tolerance"), where("Color tolerance"));
     if (tolerance < 0.)
       error("Color tolerance", "found " + text("Color tolerance") + ", needs 0 or more.");
     for (const std::string entry : {"Pixels per cell", "Cells per pixel"})
-      if (whole_number(entry) < 1 || whole_number(entry) > 1000)
+      if (count(entry) < 1 || count(entry) > 1000)
         error(entry, "found " + text(entry) + ", needs a number from 1 to 1000.");
 
     const std::filesystem::path beside = std::filesystem::path(files.folder) / text("Image");
@@ -556,13 +474,13 @@ namespace PeriDeal
       error("Image colors",
             "is empty; it says which colour is which phase. The colours of the image are: " +
               frequent_colors(picture, 6) + ".");
-    const unsigned int block = whole_number("Pixels per cell");
+    const unsigned int block = count("Pixels per cell");
     if (picture.n_columns < block || picture.n_rows < block)
       error("Pixels per cell",
             "found " + text("Pixels per cell") + ", more than the image has: " +
               std::to_string(picture.n_columns) + " x " + std::to_string(picture.n_rows) + ".");
     constexpr double   bytes_of_cell = 16.; // of what every process knows of the image
-    const unsigned int n_parts       = whole_number("Cells per pixel");
+    const unsigned int n_parts       = count("Cells per pixel");
     const double       n_cells =
       std::pow(n_parts, 2.) * (picture.n_columns / block) * (picture.n_rows / block);
     const double room =
@@ -574,11 +492,8 @@ namespace PeriDeal
               std::to_string(picture.n_columns) + " x " + std::to_string(picture.n_rows) +
               " pixels, more than memory can hold.");
     const ImageColors colors(text("Image colors"), tolerance, where("Image colors"));
-    image = std::make_shared<PhaseMap>(make_phase_map(picture,
-                                                      colors,
-                                                      block,
-                                                      whole_number("Cells per pixel"),
-                                                      where("Image colors")));
+    image = std::make_shared<PhaseMap>(
+      make_phase_map(picture, colors, block, count("Cells per pixel"), where("Image colors")));
     for (unsigned int d = 0; d < dim; ++d)
       cells[d] = image->n_cells[std::min(d, 1u)];
     require_countable("Image");
@@ -588,7 +503,6 @@ namespace PeriDeal
         image->lower[d]   = lower[d];
         image->spacing[d] = (upper[d] - lower[d]) / cells[d];
       }
-    islands.rule = choice<IslandRule>("Islands");
     if (picture.n_columns % block != 0 || picture.n_rows % block != 0)
       notes.push_back("'Pixels per cell' leaves out " + std::to_string(picture.n_columns % block) +
                       " columns of pixels at the right and " +
@@ -614,25 +528,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Domain<dim>::declare_extra_layers()
-  {
-    declare(
-      "Extra layers",
-      EntryType::list,
-      "0",
-      "1",
-      "Rows of cells that are added outside the sides of the body and left out of the results (elasticity): a number for all sides, or "
-      "`left: 10; right: 10`. Boundary conditions act on their outer sides; forces on sides and energies are those of the whole.");
-    declare(
-      "Extra layers phase",
-      EntryType::text,
-      "",
-      "",
-      "With `Shape = image`: the phase of the extra layers. Empty: that of the nearest cell of the image.");
-  }
-
-
-  template <int dim>
   void Domain<dim>::parse_extra_layers()
   {
     extra.body_lower = lower;
@@ -649,7 +544,7 @@ namespace PeriDeal
     if (shape == Shape::mesh_file)
       error("Extra layers",
             "found " + text("Extra layers") + ", but a mesh file has no rows of cells. Use 0.");
-    refuse(whole_number("Coarsening") > 0, "Extra layers", "goes with 'Coarsening = 0' only.");
+    refuse(coarsening.times > 0, "Extra layers", "goes with 'Coarsening = 0' only.");
     const Tensor<1, dim> h = spacing();
     for (unsigned int d = 0; d < dim; ++d)
       {

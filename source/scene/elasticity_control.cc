@@ -2,116 +2,64 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/elasticity_control.h>
-#include <perideal/scene/known_variables.h>
-#include <perideal/scene/warmed_by_deformation.h>
+#include <perideal/scene/lists.h>
 
 namespace PeriDeal
 {
   ElasticityControl::ElasticityControl()
     : SceneSection("Elasticity")
   {
-    declare(
-      "Model",
-      EntryType::choice,
-      "state-based",
-      "",
+    declare(model, "Model", "state-based", {"state-based", "bond-based"}) =
       "Peridynamic solid: state-based (linear peridynamic solid, any Poisson ratio), or bond-based (prototype microelastic, whose "
-      "Poisson ratio is 1/4, in plane stress 1/3; its stiffness against equal strains in all directions is that of the moduli; see `Micromodulus`).",
-      {"state-based", "bond-based"});
-    declare(
-      "Micromodulus",
-      EntryType::choice,
-      "family",
-      "",
+      "Poisson ratio is 1/4, in plane stress 1/3; its stiffness against equal strains in all directions is that of the moduli; see `Micromodulus`).";
+    declare(micromodulus, "Micromodulus", "family", {"family", "constant"}) =
       "Of `Model = bond-based`: the stiffness of a bond is divided by the sum over the family of each of its ends as it is (`family`), so that a surface costs little "
       "stiffness, or by that of a complete one, the same for all bonds (`constant`), as in the prototype microelastic brittle material of the literature, "
-      "whose surfaces are soft. Inside the body both are the same.",
-      {"family", "constant"});
-    declare("Plane",
-            EntryType::choice,
-            "stress",
-            "",
-            "Two dimensions only: no stress, or no strain, out of the plane.",
-            {"stress", "strain"});
-    declare(
-      "Kinematics",
-      EntryType::choice,
-      "linear",
-      "",
-      "Strains of small displacements, or of the deformed body with whatever rotations (`full`).",
-      {"linear", "full"});
-    declare(
-      "Temperature change",
-      EntryType::formula,
-      "0",
-      "temperature",
+      "whose surfaces are soft. Inside the body both are the same.";
+    declare(plane, "Plane", "stress", {"stress", "strain"}) =
+      "Two dimensions only: no stress, or no strain, out of the plane.";
+    declare(kinematics, "Kinematics", "linear", {"linear", "full"}) =
+      "Strains of small displacements, or of the deformed body with whatever rotations (`full`).";
+    declare("Temperature change", EntryType::formula, "0", "temperature") =
       "Temperature above that of the unstrained body, a number or a formula of x, y, z; it strains the body by "
       "`Thermal expansion` in section `Material` times this. Or `computed`: each model first solves the heat problem that the scene describes, too "
       "(Conductivity, Density and Heat capacity, Initial value and Source, Dirichlet, Flux and Convection, section `Time`), and the change is its temperature "
-      "less `Reference temperature`.");
-    declare("Reference temperature",
-            EntryType::number,
+      "less `Reference temperature`.";
+    declare(reference_temperature, "Reference temperature", "0", "temperature") =
+      "With `Temperature change = computed`: temperature of the unstressed body.";
+    declare(broken_bonds_conduct,
+            "Broken bonds conduct",
             "0",
-            "temperature",
-            "With `Temperature change = computed`: temperature of the unstressed body.");
-    declare(
-      "Broken bonds conduct",
-      EntryType::number,
-      "0",
-      "1",
-      "With `Temperature change = computed` that changes in time: the part of its heat that a bond still conducts once it has broken, from 0 (nothing) to 1 (as before).");
-    declare(
-      "Heat of deformation",
-      EntryType::boolean,
-      "false",
-      "",
+            "1",
+            Bounds{0., 1., true, "a number from 0 to 1"}) =
+      "With `Temperature change = computed` that changes in time: the part of its heat that a bond still conducts once it has broken, from 0 (nothing) to 1 (as before).";
+    declare("Heat of deformation", EntryType::boolean, "false") =
       "With `Temperature change = computed` that changes in time: a body that expands cools, one that is compressed warms, by the source -T0 beta d(theta)/dt of heat per volume, "
       "with theta the trace of the strain in three dimensions, beta = 3 K alpha of bulk modulus and `Thermal expansion`, and T0 = `Reference temperature` - `Absolute zero`. "
       "Moduli, and `Density` times `Heat capacity` (at constant strain), need the same unit of energy. Heat and equilibrium agree at each `Time step`, at each hundredth of "
-      "`End time` where none is given, and where results are written.");
-    declare(
-      "Absolute zero",
-      EntryType::text,
-      "",
-      "temperature",
-      "With `Heat of deformation = true`, a number: absolute zero on the scale of the temperatures of the scene, 0 in kelvins, -273.15 in degrees Celsius.");
-    declare(
-      "Contact",
-      EntryType::choice,
-      "auto",
-      "",
+      "`End time` where none is given, and where results are written.";
+    declare("Absolute zero", EntryType::text, "", "temperature") =
+      "With `Heat of deformation = true`, a number: absolute zero on the scale of the temperatures of the scene, 0 in kelvins, -273.15 in degrees Celsius.";
+    declare("Contact", EntryType::choice, "auto", "", {"auto", "true", "false"}) =
       "Faces of cracks press on each other, without friction, where they close: those of section `Cracks` and those that breaking bonds have left. `auto` does so wherever it can: in "
       "peridynamics, and in `coupled` with `Scheme = exchange`, with `Kinematics = linear`; and with `Kinematics = full` in peridynamics in motion with `Stepper = verlet`, "
-      "where not only faces of cracks but all nodes without a bond between them repel each other that come near, of fragments and of separate bodies. Finite elements alone do not know of it.",
-      {"auto", "true", "false"});
-    declare(
-      "Solver",
-      EntryType::choice,
-      "linear",
-      "",
+      "where not only faces of cracks but all nodes without a bond between them repel each other that come near, of fragments and of separate bodies. Finite elements alone do not know of it.";
+    declare(solver,
+            "Solver",
+            "linear",
+            {"linear",
+             "conjugate gradients",
+             "dynamic relaxation",
+             "adaptive dynamic relaxation",
+             "dynamics"}) =
       "Equilibrium by the linear system, by nonlinear conjugate gradients, or by dynamic relaxation with given or adaptive damping; or "
-      "`dynamics`, the motion until `End time`. Where loads depend on t there is an equilibrium at each `Time step` (section `Time`), else one.",
-      {"linear",
-       "conjugate gradients",
-       "dynamic relaxation",
-       "adaptive dynamic relaxation",
-       "dynamics"});
-    declare(
-      "Preconditioner",
-      EntryType::choice,
-      "multigrid",
-      "",
-      "Of `Solver = conjugate gradients`: multigrid on springs between nearest neighbours, or none as published (Le 2014).",
-      {"multigrid", "none"});
-    declare(
-      "Breaking",
-      EntryType::choice,
-      "auto",
-      "",
+      "`dynamics`, the motion until `End time`. Where loads depend on t there is an equilibrium at each `Time step` (section `Time`), else one.";
+    declare("Preconditioner", EntryType::choice, "multigrid", "", {"multigrid", "none"}) =
+      "Of `Solver = conjugate gradients`: multigrid on springs between nearest neighbours, or none as published (Le 2014).";
+    declare("Breaking", EntryType::choice, "auto", "", {"auto", "in motion", "at rest"}) =
       "Of bodies at rest whose bonds break, `in motion`: once the first bonds have broken, the others break in a damped motion from equilibrium to equilibrium; or `at rest`, "
       "in one equilibrium after the other, in each those whose stretch is at least 0.9 of the largest. Then slow cracks are drawn to the rows of the lattice. "
-      "`auto` is in motion.",
-      {"auto", "in motion", "at rest"});
+      "`auto` is in motion.";
     parse();
   }
 
@@ -130,77 +78,86 @@ namespace PeriDeal
 
   const std::string &ElasticityControl::solver_name() const
   {
-    return choice_name("Solver");
+    return text("Solver");
   }
 
 
   void ElasticityControl::parse(const Physics physics, const unsigned int dim)
   {
-    const KnownVariables known("x, y, z"); // of 'Temperature change'
-    model                 = choice<ElasticModel>("Model");
-    micromodulus          = choice<Micromodulus>("Micromodulus");
-    plane                 = choice<PlaneState>("Plane");
-    kinematics            = choice<Kinematics>("Kinematics");
-    solver                = choice<ElasticSolver>("Solver");
-    multigrid             = choice_name("Preconditioner") == "multigrid";
-    computes_temperature  = text("Temperature change") == "computed";
-    temperature_change    = computes_temperature ?
-                              Expression(0.) :
-                              Expression(text("Temperature change"), where("Temperature change"));
-    reference_temperature = number("Reference temperature");
-    if (physics != Physics::elasticity)
-      for (const Entry &entry : entries())
-        if (is_given(entry.name))
-          error(entry.name,
-                "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
-    if (is_given("Micromodulus") && model != ElasticModel::bond_based)
-      error("Micromodulus",
-            "is for 'Model = bond-based'; 'Model' is '" + choice_name("Model") +
-              "'. Leave the entry out.");
-    if (temperature_change.depends_on_time())
-      error(
-        "Temperature change",
-        "'" + temperature_change.text() +
-          "' depends on t; known variables here: x, y, z. A temperature that changes in time can be 'computed'.");
-    if (computes_temperature && !is_static())
-      error(
-        "Temperature change",
-        "'computed' is for bodies at rest, but 'Solver' is 'dynamics'. Use another solver, or a formula of x, y, z here.");
-    if (is_given("Reference temperature") && !computes_temperature)
-      error("Reference temperature",
-            "has no effect: 'Temperature change' is '" + text("Temperature change") +
-              "'. Use 'Temperature change = computed', or leave the entry out.");
-    contact_is_asked = choice_name("Contact") == "true";
-    contact          = choice_name("Contact") != "false" && !(has_full_kinematics() && is_static());
-    broken_bonds_conduct = number("Broken bonds conduct");
-    if (!(broken_bonds_conduct >= 0. && broken_bonds_conduct <= 1.))
-      error("Broken bonds conduct",
-            "found " + text("Broken bonds conduct") + ", needs a number from 0 to 1.");
-    if (is_given("Broken bonds conduct") && !computes_temperature)
-      error("Broken bonds conduct",
-            "has no effect: 'Temperature change' is '" + text("Temperature change") +
-              "'. Use 'Temperature change = computed', or leave the entry out.");
-    boolean("Heat of deformation"); // true or false
-    check_heat_of_deformation(*this);
-    if (dim != 2 && is_given("Plane"))
-      error("Plane",
-            "found '" + text("Plane") + "', but 'Dimension' is " + std::to_string(dim) +
-              (dim == 1 ? ": a bar has no plane." : ": a body in space has no plane.") +
-              " Leave the entry out.");
-    if (is_given("Preconditioner") && solver != ElasticSolver::conjugate_gradients)
-      error("Preconditioner",
-            "is for 'Solver = conjugate gradients'; 'Solver' is '" + solver_name() + "'.");
-    breaks_in_motion = choice_name("Breaking") != "at rest";
-    if (is_given("Breaking") && !is_static())
-      error("Breaking", "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
-    if (contact_is_asked && has_full_kinematics() && is_static())
-      error(
-        "Contact",
-        "found 'true', which with 'Kinematics = full' is for 'Solver = dynamics' only; 'Solver' is '" +
-          solver_name() + "'. Leave one of them out.");
-    if (has_full_kinematics() && solver == ElasticSolver::linear)
-      error(
-        "Kinematics",
-        "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'conjugate gradients' or another solver.");
+    computes_temperature = text("Temperature change") == "computed";
+    temperature_change =
+      computes_temperature ?
+        Expression(0.) :
+        Expression(text("Temperature change"), where("Temperature change"), "x, y, z");
+    for (const Entry &entry : entries())
+      refuse_unless_elastic(entry.name, physics);
+    SceneSection::parse();
+    contact = text("Contact") != "false" && !(has_full_kinematics() && is_static());
+    refuse(is_given("Micromodulus") && model != ElasticModel::bond_based,
+           "Micromodulus",
+           "is for 'Model = bond-based'; 'Model' is '" + text("Model") + "'. Leave the entry out.");
+    refuse(
+      temperature_change.depends_on_time(),
+      "Temperature change",
+      "'" + temperature_change.text() +
+        "' depends on t; known variables here: x, y, z. A temperature that changes in time can be 'computed'.");
+    refuse(
+      computes_temperature && !is_static(),
+      "Temperature change",
+      "'computed' is for bodies at rest, but 'Solver' is 'dynamics'. Use another solver, or a formula of x, y, z here.");
+    for (const std::string entry : {"Reference temperature", "Broken bonds conduct"})
+      refuse(is_given(entry) && !computes_temperature,
+             entry,
+             "has no effect: 'Temperature change' is '" + text("Temperature change") +
+               "'. Use 'Temperature change = computed', or leave the entry out.");
+    parse_heat_of_deformation();
+    refuse(dim != 2 && is_given("Plane"),
+           "Plane",
+           "found '" + text("Plane") + "', but 'Dimension' is " + std::to_string(dim) +
+             (dim == 1 ? ": a bar has no plane." : ": a body in space has no plane.") +
+             " Leave the entry out.");
+    refuse(is_given("Preconditioner") && solver != ElasticSolver::conjugate_gradients,
+           "Preconditioner",
+           "is for 'Solver = conjugate gradients'; 'Solver' is '" + solver_name() + "'.");
+    refuse(is_given("Breaking") && !is_static(),
+           "Breaking",
+           "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
+    refuse(
+      contact_is_asked() && has_full_kinematics() && is_static(),
+      "Contact",
+      "found 'true', which with 'Kinematics = full' is for 'Solver = dynamics' only; 'Solver' is '" +
+        solver_name() + "'. Leave one of them out.");
+    refuse(
+      has_full_kinematics() && solver == ElasticSolver::linear,
+      "Kinematics",
+      "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'conjugate gradients' or another solver.");
+  }
+
+
+  void ElasticityControl::parse_heat_of_deformation()
+  {
+    const std::string entry = "Heat of deformation", &zero = text("Absolute zero");
+    absolute_reference.reset();
+    const bool wanted = text(entry) == "true";
+    refuse(!wanted && !zero.empty(),
+           "Absolute zero",
+           "has no effect without 'Heat of deformation = true'. Leave one of them out.");
+    if (!wanted)
+      return;
+    refuse(
+      !computes_temperature,
+      entry,
+      "found 'true', but 'Temperature change' is '" + text("Temperature change") +
+        "', which nothing warms. Use 'Temperature change = computed', or leave the entry out.");
+    refuse(
+      zero.empty(),
+      entry,
+      "found 'true', which needs 'Absolute zero' in the same section: 0 where the temperatures of the scene are in kelvins, -273.15 in degrees Celsius.");
+    absolute_reference = reference_temperature - parse_number(zero, where("Absolute zero"));
+    refuse(
+      !(*absolute_reference > 0.),
+      "Absolute zero",
+      "found " + zero + ", but 'Reference temperature' is " + text("Reference temperature") +
+        ", not above it: their difference is the absolute temperature of the unstressed body, which 'Heat of deformation' multiplies.");
   }
 } // namespace PeriDeal

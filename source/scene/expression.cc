@@ -5,7 +5,6 @@
 
 #include <perideal/base/diverged.h>
 #include <perideal/scene/expression.h>
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <muParser.h>
@@ -42,14 +41,6 @@ namespace PeriDeal
   namespace
   {
     DeferredFormulaErrors *collector = nullptr;
-
-
-    /** What messages list (KnownVariables). */
-    std::string &listed_variables()
-    {
-      static std::string list = "x, y, z, t";
-      return list;
-    }
 
 
     /** A number and nothing else. Compiling a formula takes a hundred times as long. */
@@ -152,7 +143,9 @@ namespace PeriDeal
 
 
     /** Why muparser could not make sense of the text that starts with @p token. */
-    std::string unknown_token(const mu::Parser &parser, const std::string &token)
+    std::string unknown_token(const mu::Parser  &parser,
+                              const std::string &token,
+                              const std::string &variables)
     {
       if (token.empty())
         return "the formula ends too early";
@@ -164,31 +157,33 @@ namespace PeriDeal
         return "the function '" + token + "' needs its arguments in parentheses";
       if (token == "T")
         return "'T': the temperature is available in formulas of the material only; known variables: " +
-               listed_variables();
+               variables;
       if (token == "rand" || token == "rand_seed")
         return "'" + token + "': random numbers are not available, since a run must be repeatable";
       if (token == "and" || token == "or")
         return "unknown name '" + token + "'; write " + (token == "and" ? "&&" : "||");
-      std::vector<std::string> known = split_list(listed_variables(), ',');
+      std::vector<std::string> known = split_list(variables, ',');
       for (const auto &constant : parser.GetConst())
         known.push_back(constant.first);
       for (const auto &function : parser.GetFunDef())
         known.push_back(function.first);
       const std::string nearest = token.size() > 1 ? nearest_name(token, known) : "";
       return "unknown name '" + token + "'" +
-             (nearest.empty() ? "; known variables: " + listed_variables() :
+             (nearest.empty() ? "; known variables: " + variables :
                                 "; did you mean '" + nearest + "'?");
     }
 
 
     /** muparser's error in plain words. */
-    std::string reason(const mu::Parser &parser, const mu::ParserError &error)
+    std::string reason(const mu::Parser      &parser,
+                       const mu::ParserError &error,
+                       const std::string     &variables)
     {
       const std::string token = trimmed(error.GetToken());
       switch (error.GetCode())
         {
           case mu::ecUNASSIGNABLE_TOKEN:
-            return unknown_token(parser, token);
+            return unknown_token(parser, token, variables);
           case mu::ecUNEXPECTED_EOF:
             return "the formula ends too early";
           case mu::ecUNEXPECTED_OPERATOR:
@@ -260,19 +255,6 @@ namespace PeriDeal
   } // namespace
 
 
-  KnownVariables::KnownVariables(const std::string &list)
-    : before(listed_variables())
-  {
-    listed_variables() = list;
-  }
-
-
-  KnownVariables::~KnownVariables()
-  {
-    listed_variables() = before;
-  }
-
-
   Expression::Expression()
     : Expression(0.)
   {}
@@ -299,13 +281,14 @@ namespace PeriDeal
 
   Expression::Expression(const std::string &text,
                          const std::string &where,
+                         const std::string &variables,
                          const bool         with_temperature)
     : formula(trimmed(text))
     , where(where)
     , constant(0.)
   {
     if (formula.empty())
-      entry_error(where, "is empty, needs a number or a formula of " + listed_variables() + ".");
+      entry_error(where, "is empty, needs a number or a formula of " + variables + ".");
     if (const std::optional<double> number = plain_number(formula);
         number && std::isfinite(*number))
       {
@@ -319,12 +302,12 @@ namespace PeriDeal
     if (compiled != nullptr)
       return;
     compiled = std::make_shared<Compiled>();
-    compile(with_temperature);
+    compile(variables, with_temperature);
     one = compiled;
   }
 
 
-  void Expression::compile(const bool with_temperature)
+  void Expression::compile(const std::string &variables, const bool with_temperature)
   {
     refuse_assignment(formula, where);
     mu::Parser &parser = compiled->parser;
@@ -352,7 +335,7 @@ namespace PeriDeal
       }
     catch (const mu::ParserError &error)
       {
-        formula_error(where, formula, error.GetPos(), reason(parser, error));
+        formula_error(where, formula, error.GetPos(), reason(parser, error, variables));
       }
     if (n_results != 1)
       entry_error(where,
@@ -393,13 +376,10 @@ namespace PeriDeal
                               const double              t,
                               const double              temperature) const
   {
-    std::string point;
-    for (unsigned int d = 0; d < dim; ++d)
-      point += (d == 0 ? "" : ", ") + number_text(p[d]);
     // Properties of a temperature are asked for without a time.
     const bool hides_time = compiled->uses_temperature && !compiled->uses_time;
     report_formula_error((where.empty() ? "The" : "Entry " + where + ": the") + " value of '" +
-                         formula + "' is not finite at (" + point + ")" +
+                         formula + "' is not finite at " + point_text(p) +
                          (hides_time ? "" : ", t = " + number_text(t)) +
                          (compiled->uses_temperature ? ", T = " + number_text(temperature) : "") +
                          ". Change the formula so that it is a number everywhere.");
@@ -491,6 +471,32 @@ namespace PeriDeal
     const unsigned int owner =
       dealii::Utilities::MPI::min(message.empty() ? n_proc : rank, communicator);
     return owner == n_proc ? "" : dealii::Utilities::MPI::broadcast(communicator, message, owner);
+  }
+
+
+  void with_formulas(const MPI_Comm communicator, const std::function<void()> &action)
+  {
+    const DeferredFormulaErrors errors;
+    try
+      {
+        action();
+      }
+    catch (Diverged &diverged) // on all processes
+      {
+        if (diverged.trip.monitor == "formulas") // where what is not positive is no number
+          errors.throw_if_any(communicator);
+        if (diverged.trip.cause.empty())
+          diverged.trip.cause = errors.first(communicator);
+        throw;
+      }
+    catch (const UserError &)
+      {
+        // The cause, if it is a formula's value; not of this process alone: others wait elsewhere.
+        if (all_processes_arrive(communicator))
+          errors.throw_if_any(communicator);
+        throw;
+      }
+    errors.throw_if_any(communicator);
   }
 
 

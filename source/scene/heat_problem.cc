@@ -4,7 +4,6 @@
 // The heat problem that an elastic scene describes beside its equilibrium.
 
 #include <perideal/base/user_error.h>
-#include <perideal/scene/warmed_by_deformation.h>
 
 #include "scene_checks.h"
 
@@ -98,14 +97,12 @@ namespace PeriDeal
       heat->validate();
     });
     scene.elasticity.refuse(
-      absolute_reference(scene.elasticity) && heat->time.steady,
+      scene.elasticity.absolute_reference.has_value() && heat->time.steady,
       "Heat of deformation",
       "found 'true', but the temperature is steady ('Steady = true' in section 'Time') and does not change with time. Leave one of them out.");
     // A fraction of a degree is what matters then, of temperatures of hundreds.
-    if (absolute_reference(scene.elasticity))
-      for (const Entry &entry : scene.time.entries())
-        if (entry.name == "Tolerance" && entry.text == entry.default_text)
-          heat->time.tolerance = 1e-8;
+    if (scene.elasticity.absolute_reference && !scene.time.is_given("Tolerance"))
+      heat->time.tolerance = 1e-8;
     scene.heat = heat;
   }
 

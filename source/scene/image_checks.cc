@@ -3,12 +3,12 @@
 
 // The parts of an image that no side holds, and what the user should know of the image.
 
+#include <perideal/base/place_text.h>
 #include <perideal/scene/lists.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "scene_checks.h"
 
@@ -26,19 +26,9 @@ namespace PeriDeal
     }
 
 
-    std::string place_text(const Point<2> &p)
-    {
-      char text[80];
-      std::snprintf(text, sizeof text, "(%.6g, %.6g)", p[0], p[1]);
-      return text;
-    }
-
-
     std::string percent(const double share)
     {
-      char text[40];
-      std::snprintf(text, sizeof text, "%.3g %%", 100. * share);
-      return text;
+      return rounded_text(100. * share) + " %";
     }
 
 

@@ -4,7 +4,6 @@
 // What a mesh file gives names to.
 
 #include <perideal/scene/lists.h>
-#include <perideal/scene/quoted.h>
 
 #include <algorithm>
 #include <array>
@@ -42,7 +41,7 @@ namespace PeriDeal
       for (const Entry &entry : conditions.entries())
         {
           const std::vector<std::string> names = names_in(entry.text);
-          if (std::find(names.begin(), names.end(), name) == names.end())
+          if (!has(names, name))
             continue;
           if (entry.name == "Parts")
             return false;
@@ -330,9 +329,7 @@ namespace PeriDeal
                             "; those between two cells are: " + text_of_groups(groups.interfaces) +
                             ".");
           }
-        cracks.refuse(std::find(numbers.begin(), numbers.end(), *number) != numbers.end(),
-                      entry,
-                      "'" + name + "' is named twice.");
+        cracks.refuse(has(numbers, *number), entry, "'" + name + "' is named twice.");
         numbers.push_back(*number);
         const auto &faces = groups.faces.at(*number);
         for (const auto &face : faces)

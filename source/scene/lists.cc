@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/lists.h>
-#include <perideal/scene/quoted.h>
 
 #include <algorithm>
 #include <cmath>

@@ -155,7 +155,7 @@ namespace PeriDeal
   {
     const std::vector<std::string> formats = {"prm", "markdown", "JSON", "XML"};
     Scene<2>                       scene;
-    if (std::find(formats.begin(), formats.end(), format) == formats.end())
+    if (!has(formats, format))
       {
         const std::string text = explanation(scene.sections(), format);
         if (text.empty())

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/material.h>
 #include <perideal/scene/vector_conditions.h>
@@ -25,6 +24,7 @@ namespace PeriDeal
       const auto in_phase = [&](const int phase) {
         return Expression("(" + a.formula(phase).text() + ") * (" + b.formula(phase).text() + ")",
                           "'Diffusivity' times 'Saturated concentration' in section 'Material'",
+                          "x, y, z, T",
                           true);
       };
       if (!phases.gives("Diffusivity") && !phases.gives("Saturated concentration"))
@@ -40,95 +40,51 @@ namespace PeriDeal
   Material::Material()
     : SceneSection("Material")
   {
-    declare(
-      "Conductivity",
-      EntryType::formula,
-      "1",
-      "power/(length temperature)",
-      "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z and T, the temperature (wetness, potential) itself.");
-    declare(
-      "Diffusivity",
-      EntryType::formula,
-      "",
-      material_entry("Diffusivity").unit,
-      "Moisture only, in place of Conductivity: D of the flux -D grad C of the concentration C = Saturated concentration x wetness in each material. "
-      "Conductivity is then Diffusivity x Saturated concentration, and the body stores Saturated concentration per wetness, so that flows and amounts are masses. "
-      "A number or a formula of x, y, z and T, the wetness.");
-    declare(
-      "Density",
-      EntryType::formula,
-      "1",
-      "mass/length^3",
-      "Ignored when steady, and by elasticity unless its solver is `dynamics`; may be 0 then. A motion with the default is told in a note; `1.0` says that 1 is meant.");
-    declare(
-      "Heat capacity",
-      EntryType::formula,
-      "1",
-      "energy/(mass temperature)",
-      "Per mass; the body stores Density x Heat capacity, either a number or a formula of x, y, z, T. Ignored when steady, and may be 0 then. With electricity their product is the "
-      "capacitance per volume, and 0 means a steady state.");
-    declare(
-      "Saturated concentration",
-      EntryType::formula,
-      "1",
-      "mass/length^3",
-      "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. With Conductivity it is for the concentration field and the "
-      "weight alone, and the flux is -Conductivity x grad(wetness); with Diffusivity it is part of the conductivity and the storage. The wetness is continuous where it jumps.");
-    declare("Interface rule",
-            EntryType::choice,
-            "arithmetic",
-            "",
-            "Conductivity of a bond between unequal nodes: the smaller value, the mean, or the "
-            "harmonic mean by the length of the bond in each phase.",
-            {"minimum", "arithmetic", "harmonic"});
-    declare_elasticity();
-    parse();
-  }
-
-
-  void Material::declare_elasticity()
-  {
     const std::string two =
       " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional "
       "solid, also in 1D and 2D.";
     const std::string formula = ": a number or a formula of x, y, z.";
     const auto        entry   = [&](const std::string &name,
-                           const std::string &default_text,
-                           const std::string &documentation) {
-      declare(name, EntryType::formula, default_text, material_entry(name).unit, documentation);
+                           const std::string &default_text = "") -> std::string          &{
+      return declare(name, EntryType::formula, default_text, material_entry(name).unit);
     };
-    entry("Bulk modulus", "", "Pressure per relative change of volume" + formula + two);
-    entry("Shear modulus", "", "Shear stress per change of angle" + formula + two);
-    entry("Young modulus", "", "Stress per strain of a bar" + formula + two);
-    entry("Poisson ratio",
-          "",
-          "Contraction of a bar per its extension" + formula +
-            " Greater than -1 and less than 0.5; in plane stress and in bars it may be 0.5." + two);
-    entry("Thermal expansion",
-          "0",
-          "Strain per `Temperature change` (section `Elasticity`)" + formula);
-    entry(
-      "Fracture energy",
-      "",
+    entry("Conductivity", "1") =
+      "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z and T, the temperature (wetness, potential) itself.";
+    entry("Diffusivity") =
+      "Moisture only, in place of Conductivity: D of the flux -D grad C of the concentration C = Saturated concentration x wetness in each material. "
+      "Conductivity is then Diffusivity x Saturated concentration, and the body stores Saturated concentration per wetness, so that flows and amounts are masses. "
+      "A number or a formula of x, y, z and T, the wetness.";
+    entry("Density", "1") =
+      "Ignored when steady, and by elasticity unless its solver is `dynamics`; may be 0 then. A motion with the default is told in a note; `1.0` says that 1 is meant.";
+    entry("Heat capacity", "1") =
+      "Per mass; the body stores Density x Heat capacity, either a number or a formula of x, y, z, T. Ignored when steady, and may be 0 then. With electricity their product is the "
+      "capacitance per volume, and 0 means a steady state.";
+    entry("Saturated concentration", "1") =
+      "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. With Conductivity it is for the concentration field and the "
+      "weight alone, and the flux is -Conductivity x grad(wetness); with Diffusivity it is part of the conductivity and the storage. The wetness is continuous where it jumps.";
+    declare(interface_rule, "Interface rule", "arithmetic", {"minimum", "arithmetic", "harmonic"}) =
+      "Conductivity of a bond between unequal nodes: the smaller value, the mean, or the "
+      "harmonic mean by the length of the bond in each phase.";
+    entry("Bulk modulus")  = "Pressure per relative change of volume" + formula + two;
+    entry("Shear modulus") = "Shear stress per change of angle" + formula + two;
+    entry("Young modulus") = "Stress per strain of a bar" + formula + two;
+    entry("Poisson ratio") =
+      "Contraction of a bar per its extension" + formula +
+      " Greater than -1 and less than 0.5; in plane stress and in bars it may be 0.5." + two;
+    entry("Thermal expansion", "0") =
+      "Strain per `Temperature change` (section `Elasticity`)" + formula;
+    entry("Fracture energy") =
       "Energy per area of a new crack" + formula +
-        " The stretch at which bonds break follows from it. Without this and Critical stretch they do not break.");
-    entry("Critical stretch",
-          "",
-          "Relative extension at which a bond breaks, instead of Fracture energy" + formula);
-    declare(
-      "Weibull modulus",
-      EntryType::text,
-      "",
-      "1",
+      " The stretch at which bonds break follows from it. Without this and Critical stretch they do not break.";
+    entry("Critical stretch") =
+      "Relative extension at which a bond breaks, instead of Fracture energy" + formula;
+    declare("Weibull modulus", EntryType::text, "", "1") =
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; "
-      "a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.");
-    declare(
-      "Strength seed",
-      EntryType::text,
-      "",
-      "",
+      "a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
+    declare("Strength seed", EntryType::text) =
       "With Weibull modulus: which of the possible bodies. The same seed gives the same nodes the "
-      "same numbers, on any number of processes.");
+      "same numbers, on any number of processes.";
+    parse();
   }
 
 
@@ -167,13 +123,11 @@ namespace PeriDeal
 
   Expression Material::read(const std::string &entry, const Physics physics) const
   {
-    const MaterialEntry &kind = material_entry(entry);
-    const Expression     value =
-      material_formula(text(entry), kind, physics == Physics::elasticity, where(entry));
-    if (kind.positive && value.is_constant() &&
-        !(value.value(dealii::Point<1>()) > 0. || (may_vanish(entry, physics) && is_zero(value))))
-      error(entry, "found " + text(entry) + ", needs a value greater than 0.");
-    return value;
+    return material_formula(text(entry),
+                            material_entry(entry),
+                            physics == Physics::elasticity,
+                            may_vanish(entry, physics),
+                            where(entry));
   }
 
 
@@ -210,7 +164,9 @@ namespace PeriDeal
            "found " + text("Weibull modulus") +
              ", needs a number greater than 0, of at least 0.5 (real bodies have 2 to 50).");
     if (modulus)
-      scatter = Scatter{positive_number("Weibull modulus"), whole_number("Strength seed")};
+      scatter =
+        Scatter{parse_number(text("Weibull modulus"), where("Weibull modulus")),
+                parse_whole_number(text("Strength seed"), where("Strength seed"), 2147483647u)};
   }
 
 
@@ -234,7 +190,7 @@ namespace PeriDeal
     density                   = property("Density");
     heat_capacity             = phases.property("Heat capacity", capacity);
     saturated_concentration   = property("Saturated concentration");
-    interface_rule            = choice<InterfaceRule>("Interface rule");
+    SceneSection::parse();
     if (const auto diffusivity = optional_property("Diffusivity", physics))
       {
         if (physics != Physics::moisture)
@@ -290,35 +246,18 @@ namespace PeriDeal
   InitialAndSource::InitialAndSource()
     : SceneSection("Initial and source")
   {
-    declare("Initial value",
-            EntryType::formula,
-            "0",
-            "temperature",
-            "Temperature at time 0, a number or a formula of x, y, z (t is 0).");
-    declare("Source",
-            EntryType::formula,
-            "0",
-            "power/length^3",
-            "Heat produced in the body, a number or a formula of x, y, z, t.");
-    declare(
-      "Body force",
-      EntryType::list,
-      "",
-      "force/length^3",
-      "Elasticity: force per volume, one formula of x, y, z, t per direction, separated by commas. Empty: none.");
-    declare(
-      "Initial displacement",
-      EntryType::list,
-      "",
-      "length",
+    declare("Initial value", EntryType::formula, "0", "temperature") =
+      "Temperature at time 0, a number or a formula of x, y, z (t is 0).";
+    declare("Source", EntryType::formula, "0", "power/length^3") =
+      "Heat produced in the body, a number or a formula of x, y, z, t.";
+    declare("Body force", EntryType::list, "", "force/length^3") =
+      "Elasticity: force per volume, one formula of x, y, z, t per direction, separated by commas. Empty: none.";
+    declare("Initial displacement", EntryType::list, "", "length") =
       "Elasticity with `Solver = dynamics`: at time 0, one formula of x, y, z per direction, separated by commas. Empty: none. Sides in "
-      "`Displacement` have theirs from the beginning.");
-    declare("Initial velocity",
-            EntryType::list,
-            "",
-            "length/time",
-            "Elasticity with `Solver = dynamics`: at time 0, one formula of x, y, z per direction, "
-            "separated by commas. Empty: at rest.");
+      "`Displacement` have theirs from the beginning.";
+    declare("Initial velocity", EntryType::list, "", "length/time") =
+      "Elasticity with `Solver = dynamics`: at time 0, one formula of x, y, z per direction, "
+      "separated by commas. Empty: at rest.";
     parse();
   }
 
@@ -327,39 +266,34 @@ namespace PeriDeal
   {
     initial_value = Expression(text("Initial value"), where("Initial value"));
     source        = Expression(text("Source"), where("Source"));
-    body_force.clear();
-    if (!text("Body force").empty())
-      body_force = parse_vector(text("Body force"), dim, where("Body force"));
-
-    const bool elastic = physics == Physics::elasticity;
-    for (auto *const list : {&initial_displacement, &initial_velocity})
+    for (const auto &[entry, member] :
+         {std::make_pair("Body force", &body_force),
+          std::make_pair("Initial displacement", &initial_displacement),
+          std::make_pair("Initial velocity", &initial_velocity)})
       {
-        const std::string entry = list == &initial_displacement ? "Initial displacement" :
-                                                                  "Initial velocity";
-        list->clear();
-        if (text(entry).empty())
-          continue;
-        if (!elastic)
-          error(entry,
-                "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
-        const KnownVariables known("x, y, z");
-        *list = parse_vector(text(entry), dim, where(entry));
-        for (const Expression &value : *list)
-          if (value.depends_on_time())
-            error(entry, "'" + value.text() + "' depends on t; known variables here: x, y, z.");
+        const bool is_initial = member != &body_force;
+        member->clear();
+        if (is_initial)
+          refuse_unless_elastic(entry, physics);
+        if (!text(entry).empty())
+          *member =
+            parse_vector(text(entry), dim, where(entry), is_initial ? "x, y, z" : "x, y, z, t");
+        refuse_unless_elastic(entry, physics);
+        for (const Expression &value : *member)
+          refuse(is_initial && value.depends_on_time(),
+                 entry,
+                 "'" + value.text() + "' depends on t; known variables here: x, y, z.");
       }
+    const bool        only_solid  = physics == Physics::elasticity && !with_heat;
     const std::string or_computed = ", or 'Temperature change = computed' in section 'Elasticity'.";
-    if (elastic && !with_heat && is_given("Initial value"))
-      error(
-        "Initial value",
-        "is for diffusion; with 'Physics = elasticity' bodies start at rest, or with 'Initial displacement' and 'Initial velocity'" +
-          or_computed);
-    if (elastic && !with_heat && is_given("Source"))
-      error("Source",
-            "is for diffusion; with 'Physics = elasticity' use 'Body force'" + or_computed);
-    if (!elastic && !text("Body force").empty())
-      error("Body force",
-            "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'.");
+    refuse(
+      only_solid && is_given("Initial value"),
+      "Initial value",
+      "is for diffusion; with 'Physics = elasticity' bodies start at rest, or with 'Initial displacement' and 'Initial velocity'" +
+        or_computed);
+    refuse(only_solid && is_given("Source"),
+           "Source",
+           "is for diffusion; with 'Physics = elasticity' use 'Body force'" + or_computed);
   }
 
 
@@ -494,13 +428,8 @@ namespace PeriDeal
     // Constant ones have been checked.
     const std::string fault = uniform_moduli() ? "" : fault_of_moduli(a, b);
     if (!fault.empty())
-      {
-        std::string point;
-        for (unsigned int d = 0; d < dim; ++d)
-          point += (d == 0 ? "" : ", ") + number_text(p[d]);
-        report_formula_error("Entry " + where(name_of(given_moduli[a > 0. ? 1 : 0])) + ", at (" +
-                             point + "): " + fault);
-      }
+      report_formula_error("Entry " + where(name_of(given_moduli[a > 0. ? 1 : 0])) + ", at " +
+                           point_text(p) + ": " + fault);
     return moduli_from(given_moduli[0], a, given_moduli[1], b);
   }
 

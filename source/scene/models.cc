@@ -9,153 +9,75 @@ namespace PeriDeal
   Peridynamics::Peridynamics()
     : SceneSection("Peridynamics")
   {
-    declare_quadrature();
-    declare_boundary();
-    parse();
-  }
-
-
-  void Peridynamics::declare_quadrature()
-  {
-    declare(
-      "Horizon ratio",
-      EntryType::number,
-      "3",
-      "1",
+    declare(horizon_ratio, "Horizon ratio", "3", "1", Bounds::one_or_more) =
       "m, the horizon divided by the (smallest) node spacing; at least 1. 3 is usual, larger values "
-      "cost more and sample the kernel better.");
-    declare("Horizon",
-            EntryType::text,
-            "",
-            "length",
-            "The horizon as a length, instead of Horizon ratio.");
-    declare("Kernel",
-            EntryType::choice,
-            "conical",
-            "",
-            "Shape k(r) of the micro-conductivity within the horizon delta: 1, 1 - r/delta, or "
-            "exp(-(2 r/delta)^2).",
-            {"constant", "conical", "gaussian"});
-    declare(
-      "Kernel exponent",
-      EntryType::text,
-      "auto",
-      "1",
-      "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.");
-    declare(
-      "Volume fraction",
-      EntryType::choice,
-      "linear",
-      "",
+      "cost more and sample the kernel better.";
+    declare_if_given(horizon, "Horizon", "", "length", Bounds::length) =
+      "The horizon as a length, instead of Horizon ratio.";
+    declare(kernel, "Kernel", "conical", {"constant", "conical", "gaussian"}) =
+      "Shape k(r) of the micro-conductivity within the horizon delta: 1, 1 - r/delta, or "
+      "exp(-(2 r/delta)^2).";
+    declare("Kernel exponent", EntryType::text, "auto", "1") =
+      "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.";
+    declare(volume_fraction, "Volume fraction", "linear", {"none", "linear", "exact"}) =
       "Share of a neighbour's volume that counts: all of it for r <= delta (none); a linear ramp "
       "one spacing wide about r = delta; or the exact part of its lattice cell within the "
-      "horizon.",
-      {"none", "linear", "exact"});
-    declare(
-      "Calibration",
-      EntryType::choice,
-      "discrete",
-      "",
+      "horizon.";
+    declare(calibration, "Calibration", "discrete", {"discrete", "analytic"}) =
       "What makes a linear field conduct Conductivity times its gradient: the sum over a full "
-      "family of the lattice (exact at any m), or the integral (low by 7 % at m = 3 in 2D).",
-      {"discrete", "analytic"});
-    declare("Self term",
-            EntryType::choice,
-            "none",
-            "",
-            "The term of a node with itself as published by Bobaru and Duangpanya; inflates the "
-            "conductivity.",
-            {"none", "paper"});
-    declare("Nodal volume",
-            EntryType::choice,
-            "partial",
-            "",
-            "Volume of nodes on the boundary: half a cell on an edge, a quarter at a corner, or "
-            "full cells.",
-            {"partial", "full"});
-    declare("Operator form",
-            EntryType::choice,
+      "family of the lattice (exact at any m), or the integral (low by 7 % at m = 3 in 2D).";
+    declare(self_term, "Self term", "none", {"none", "paper"}) =
+      "The term of a node with itself as published by Bobaru and Duangpanya; inflates the "
+      "conductivity.";
+    declare(nodal_volume, "Nodal volume", "partial", {"partial", "full"}) =
+      "Volume of nodes on the boundary: half a cell on an edge, a quarter at a corner, or "
+      "full cells.";
+    declare(form, "Operator form", "auto", {"auto", "lattice", "stored"}) =
+      "How bonds are kept: computed from the lattice, stored one by one, or whichever suits.";
+    declare(treatment,
+            "Boundary treatment",
             "auto",
-            "",
-            "How bonds are kept: computed from the lattice, stored one by one, or whichever suits.",
-            {"auto", "lattice", "stored"});
-  }
-
-
-  void Peridynamics::declare_boundary()
-  {
-    declare(
-      "Boundary treatment",
-      EntryType::choice,
-      "auto",
-      "",
+            {"auto", "exchange", "none", "layer", "fictitious mirror", "fictitious constant"}) =
       "What happens at the surface of the body. `exchange`: bonds in exchange for what finite elements conduct along them, with the rest "
       "left to the elements, so that a linear field is exact up to the surface and all conditions act as in finite elements. The others "
       "cut families off at the surface, and Dirichlet values act on the nodes of the side (`none`), on layers of nodes inside, or on "
       "fictitious nodes outside the body, mirrored (2 T* - T) or constant (T*). `auto`: exchange where it is possible (nodes on "
-      "vertices, no slaves, self term or energy correction), else none, as for elasticity.",
-      {"auto", "exchange", "none", "layer", "fictitious mirror", "fictitious constant"});
-    declare("Layer rows",
-            EntryType::whole_number,
-            "1",
-            "1",
-            "With 'layer': rows of nodes nearest to the side that carry the value.");
-    declare(
-      "Flux treatment",
-      EntryType::choice,
-      "natural",
-      "",
+      "vertices, no slaves, self term or energy correction), else none, as for elasticity.";
+    declare(layer_rows, "Layer rows", "1", Bounds::one_or_more) =
+      "With 'layer': rows of nodes nearest to the side that carry the value.";
+    declare(flux_treatment,
+            "Flux treatment",
+            "natural",
+            {"natural", "extrapolation", "layer extrapolation"}) =
       "How a given Flux enters: as a source in the outermost row of nodes; by values of the side's "
       "nodes extrapolated from their families; or (1D) by values of all nodes within the horizon "
-      "of the end.",
-      {"natural", "extrapolation", "layer extrapolation"});
-    declare(
-      "Surface correction",
-      EntryType::choice,
-      "auto",
-      "",
+      "of the end.";
+    declare(surface_correction,
+            "Surface correction",
+            "auto",
+            {"none", "crack scaling", "energy", "moments", "fictitious nodes", "auto"}) =
       "What makes up for missing bonds. `auto`: for diffusion crack scaling beside insulated cracks that lie still, where it is the more accurate one for all models of the scene, else nothing; families of elastic peridynamics go on beyond planes of symmetry and all flat sides of a lattice, and beyond the whole boundary of a mesh from a file with nodes at vertices, at no more cost than their bonds; where bonds may break, in motion, and where a body without holes on a lattice is thin (a third as long as along another direction, or less, and 16 horizons at most), "
       "beyond free flat sides of a lattice in part, what they lack there and at its holes being made up for by the weights of their own bonds, and on meshes beyond sides with conditions, with such weights at all others; at rest on meshes beyond free sides in part, too, where the body behind them is thin (5 horizons, 3 at rims of round holes, and half of its extent at most). Factors of bonds: beside cracks only (`crack scaling`, for finite elements with "
       "`Mesh = pairs`, too); or wherever the energy of a unit gradient is not that of the classical body (`energy`), at sides, cracks and "
       "voids. Elasticity has `energy`, of stretches along the axes, and `moments`, the smallest change of bonds "
       "with which a uniform strain has its dilatation, stress and energy at each node whose bonds do not get negative factors by it; and `fictitious nodes` beyond flat sides, "
-      "which continue the displacement linearly and complete the families inside.",
-      {"none", "crack scaling", "energy", "moments", "fictitious nodes", "auto"});
-    declare(
-      "Correction direction",
-      EntryType::choice,
-      "both",
-      "",
+      "which continue the displacement linearly and complete the families inside.";
+    declare(correction_direction, "Correction direction", "both", {"x", "y", "z", "both"}) =
       "With `energy`: the direction of the unit gradient. `both`: one factor for each direction of space, "
-      "weighted with the squares of the bond's direction cosines.",
-      {"x", "y", "z", "both"});
-    declare(
-      "Bonds across voids",
-      EntryType::choice,
-      "auto",
-      "",
+      "weighted with the squares of the bond's direction cosines.";
+    declare(across_voids, "Bonds across voids", "auto", {"auto", "keep", "cut"}) =
       "Bonds whose straight way leaves the body, through a hole, a slit, a notch or an empty part of an image, on lattices and meshes: `cut` them, as `auto` does, "
-      "or `keep` them, so that a void narrower than the horizon is no gap; `Boundary treatment = exchange` never has them.",
-      {"auto", "keep", "cut"});
+      "or `keep` them, so that a void narrower than the horizon is no gap; `Boundary treatment = exchange` never has them.";
+    parse();
   }
 
 
   void Peridynamics::parse(const Physics physics)
   {
-    horizon_ratio = number("Horizon ratio");
-    if (horizon_ratio < 1.)
-      error("Horizon ratio", "found " + text("Horizon ratio") + ", needs 1 or more.");
-    horizon = -1.;
-    if (!text("Horizon").empty())
-      {
-        if (is_given("Horizon ratio"))
-          error("Horizon", "'Horizon ratio' is given, too: give one of the two.");
-        horizon = parse_number(text("Horizon"), where("Horizon"));
-        if (!(horizon > 0.))
-          error("Horizon",
-                "found " + text("Horizon") + ", needs a length greater than 0 (or nothing).");
-      }
-    kernel          = choice<KernelShape>("Kernel");
+    SceneSection::parse();
+    refuse(horizon > 0. && is_given("Horizon ratio"),
+           "Horizon",
+           "'Horizon ratio' is given, too: give one of the two.");
     kernel_exponent = physics == Physics::elasticity ? 0 : 2;
     if (const std::string &given = text("Kernel exponent"); given != "auto")
       {
@@ -164,23 +86,11 @@ namespace PeriDeal
                 "found " + given + ", needs 'auto' or a whole number: 0, 1 or 2.");
         kernel_exponent = given[0] - '0';
       }
-    volume_fraction = choice<VolumeFraction>("Volume fraction");
-    calibration     = choice<Calibration>("Calibration");
-    self_term       = choice<SelfTerm>("Self term");
-    nodal_volume    = choice<NodalVolume>("Nodal volume");
-    treatment       = choice<BoundaryTreatment>("Boundary treatment");
-    layer_rows      = whole_number("Layer rows");
-    refuse(layer_rows == 0, "Layer rows", "found 0, needs 1 or more.");
-    flux_treatment       = choice<FluxTreatment>("Flux treatment");
-    surface_correction   = choice<SurfaceCorrection>("Surface correction");
-    correction_direction = choice<CorrectionDirection>("Correction direction");
     if (physics != Physics::elasticity &&
         (surface_correction == SurfaceCorrection::moments || completes_families()))
       error("Surface correction",
             "'" + text("Surface correction") +
               "' is for 'Physics = elasticity'; use 'none', 'crack scaling' or 'energy'.");
-    across_voids                = choice<BondsAcrossVoids>("Bonds across voids");
-    form                        = choice<OperatorForm>("Operator form");
     const auto refuse_in_solids = [&](const bool         given,
                                       const std::string &entry,
                                       const std::string &remedy,
@@ -239,26 +149,18 @@ namespace PeriDeal
   FiniteElements::FiniteElements()
     : SceneSection("Finite elements")
   {
-    declare("Degree",
-            EntryType::whole_number,
-            "1",
-            "1",
-            "Polynomial degree of the elements: 1, 2 or 3.");
-    declare("Capacity",
-            EntryType::choice,
-            "lumped",
-            "",
-            "Capacity matrix: diagonal by row sums, or as integrated (needs an implicit stepper).",
-            {"lumped", "consistent"});
+    declare(degree, "Degree", "1", Bounds::one_to_three) =
+      "Polynomial degree of the elements: 1, 2 or 3.";
+    declare("Capacity", EntryType::choice, "lumped", "", {"lumped", "consistent"}) =
+      "Capacity matrix: diagonal by row sums, or as integrated (needs an implicit stepper).";
     parse();
   }
 
 
   void FiniteElements::parse(const Physics physics, const bool with_heat)
   {
-    degree = whole_number("Degree");
-    refuse(degree < 1 || degree > 3, "Degree", "found " + text("Degree") + ", needs 1, 2 or 3.");
-    consistent_capacity = choice<int>("Capacity") == 1;
+    SceneSection::parse();
+    consistent_capacity = text("Capacity") == "consistent";
     refuse(consistent_capacity && physics == Physics::elasticity && !with_heat,
            "Capacity",
            "'consistent' is for diffusion; masses are lumped with 'Physics = elasticity'.");

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/parts.h>
-#include <perideal/scene/quoted.h>
 
 #include <cctype>
 
@@ -73,8 +71,7 @@ namespace PeriDeal
 
   Expression part_formula(const std::string &text, const std::string &where)
   {
-    const KnownVariables known("x, y, z");
-    Expression           formula(text, where);
+    Expression formula(text, where, "x, y, z");
     if (formula.depends_on_time())
       entry_error(where,
                   "the formula '" + text +

@@ -50,7 +50,7 @@ namespace PeriDeal
     for (const std::string &piece : split_list(text, ';'))
       {
         const auto [name, value] = name_and_value(piece, where);
-        if (name != void_name && std::find(phases.begin(), phases.end(), name) == phases.end())
+        if (name != void_name && !has(phases, name))
           phases.push_back(name);
         rules.push_back(read(name, value, where));
       }
@@ -264,7 +264,7 @@ namespace PeriDeal
 
   bool PhaseMap::has_voids() const
   {
-    return std::find(phases.begin(), phases.end(), empty) != phases.end();
+    return has(phases, empty);
   }
 
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/phases.h>
 #include <perideal/scene/vector_conditions.h>
@@ -103,8 +102,7 @@ namespace PeriDeal
         slack = 1e-10 * size;
         return;
       }
-    const KnownVariables known("x, y, z");
-    formula = Expression(text, where);
+    formula = Expression(text, where, "x, y, z");
     if (formula.depends_on_time())
       entry_error(where, "'" + text + "' depends on t; known variables here: x, y, z.");
   }
@@ -183,13 +181,9 @@ namespace PeriDeal
             found = static_cast<int>(k);
             continue;
           }
-        std::string point;
-        for (unsigned int d = 0; d < dim; ++d)
-          point += (d == 0 ? "" : ", ") + number_text(p[d]);
-        report_formula_error(
-          "Entry " + where + ": the phases '" + names[found] + "' and '" + names[k] +
-          "' overlap at (" + point +
-          "). Change a region so that every point belongs to one phase at most.");
+        report_formula_error("Entry " + where + ": the phases '" + names[found] + "' and '" +
+                             names[k] + "' overlap at " + point_text(p) +
+                             ". Change a region so that every point belongs to one phase at most.");
       }
     if constexpr (dim == 2)
       if (found < 0 && image)
@@ -294,12 +288,12 @@ namespace PeriDeal
   Expression material_formula(const std::string   &text,
                               const MaterialEntry &entry,
                               const bool           elastic,
+                              const bool           may_vanish,
                               const std::string   &where)
   {
     const bool        knows_temperature = entry.with_temperature && !(elastic && entry.elasticity);
     const std::string variables         = knows_temperature ? "x, y, z, T" : "x, y, z";
-    const KnownVariables known(variables);
-    const Expression     formula(text, where, true);
+    const Expression  formula(text, where, variables, true);
     if (formula.depends_on_time())
       entry_error(where, "'" + text + "' depends on t; known variables here: " + variables + ".");
     if (formula.depends_on_temperature() && !entry.with_temperature)
@@ -309,6 +303,9 @@ namespace PeriDeal
         where,
         "'" + text +
           "' depends on T, which is no unknown of 'Physics = elasticity'; known variables here: x, y, z.");
+    if (entry.positive && formula.is_constant() &&
+        !(formula.value(dealii::Point<1>()) > 0. || (may_vanish && is_zero(formula))))
+      entry_error(where, "found " + text + ", needs a value greater than 0.");
     return formula;
   }
 
@@ -316,25 +313,17 @@ namespace PeriDeal
   Phases::Phases()
     : SceneSection("Material/Phases")
   {
-    declare(
-      "Regions",
-      EntryType::list,
-      "",
-      "",
+    declare("Regions", EntryType::list) =
       "Parts of the body with a material of their own: `name: region`, several separated by `;`. A region is where a formula of x, y, "
       "z is greater than 0, or `circle(x, y, r)`, `rectangle(x0, y0, x1, y1)`, `polygon(x0, y0, x1, y1, ...)`, `sphere(x, y, z, r)`, "
       "`box(x0, y0, z0, x1, y1, z1)`, their rims included, or with a mesh file `mesh(name)` or `mesh(id)`, the cells of that physical surface (in 3D "
       "volume). Regions must not overlap; outside them the entries of section `Material` "
-      "hold. The phases of an image (section `Domain`) are phases, too; a region holds before them.");
+      "hold. The phases of an image (section `Domain`) are phases, too; a region holds before them.";
     for (const MaterialEntry &entry : material_entries())
-      declare(
-        entry.name,
-        EntryType::list,
-        "",
-        entry.unit,
+      declare(entry.name, EntryType::list, "", entry.unit) =
         (entry.name == "Conductivity" ? "Thermal conductivity" : entry.name) +
-          " of each phase: `name: formula of x, y, z" + (entry.with_temperature ? ", T" : "") +
-          "`, several separated by `;`. A phase that is not named here has the value of section `Material`.");
+        " of each phase: `name: formula of x, y, z" + (entry.with_temperature ? ", T" : "") +
+        "`, several separated by `;`. A phase that is not named here has the value of section `Material`.";
     parse();
   }
 
@@ -345,25 +334,21 @@ namespace PeriDeal
     std::vector<std::optional<Expression>> list(regions->names.size());
     for (const std::string &piece : split_list(text(entry), ';'))
       {
-        const auto        name_value = name_and_value(piece, where(entry));
-        const std::string at         = where(entry) + ", phase '" + name_value.first + "'";
-        const auto        found =
-          std::find(regions->names.begin(), regions->names.end(), name_value.first);
+        const auto [name, text_of_phase] = name_and_value(piece, where(entry));
+        const std::string at             = where(entry) + ", phase '" + name + "'";
+        const auto        found = std::find(regions->names.begin(), regions->names.end(), name);
         if (found == regions->names.end())
           error(entry,
-                "there is no phase '" + name_value.first + "' in 'Regions'" +
+                "there is no phase '" + name + "' in 'Regions'" +
                   (regions->image ? " or 'Image colors' (section 'Domain')" : "") +
                   (regions->names.empty() ?
                      "." :
                      "; the phases are: " + join_names(regions->names) + ".") +
-                  did_you_mean(name_value.first, regions->names));
+                  did_you_mean(name, regions->names));
         std::optional<Expression> &value = list[found - regions->names.begin()];
         if (value)
-          error(entry, "the phase '" + name_value.first + "' is named twice.");
-        value = material_formula(name_value.second, kind, elastic, at);
-        if (kind.positive && value->is_constant() &&
-            !(value->value(dealii::Point<1>()) > 0. || (may_vanish(entry) && is_zero(*value))))
-          entry_error(at, "found " + name_value.second + ", needs a value greater than 0.");
+          error(entry, "the phase '" + name + "' is named twice.");
+        value = material_formula(text_of_phase, kind, elastic, may_vanish(entry), at);
       }
     return list;
   }
@@ -380,23 +365,18 @@ namespace PeriDeal
     list->mesh  = std::make_shared<MeshMaterials>();
     for (const std::string &piece : split_list(text("Regions"), ';'))
       {
-        const auto name_value = name_and_value(piece, where("Regions"));
-        if (std::find(list->names.begin(), list->names.end(), name_value.first) !=
-            list->names.end())
-          error("Regions", "the phase '" + name_value.first + "' is named twice.");
-        if (name_value.first.find_first_of(",\"") != std::string::npos)
-          error("Regions",
-                "the name of the phase '" + name_value.first +
-                  "' has a comma or a quotation mark.");
-        list->names.push_back(name_value.first);
-        list->regions.emplace_back(name_value.second,
-                                   where("Regions") + ", phase '" + name_value.first + "'",
-                                   list->mesh);
+        const auto [name, region] = name_and_value(piece, where("Regions"));
+        if (has(list->names, name))
+          error("Regions", "the phase '" + name + "' is named twice.");
+        if (name.find_first_of(",\"") != std::string::npos)
+          error("Regions", "the name of the phase '" + name + "' has a comma or a quotation mark.");
+        list->names.push_back(name);
+        list->regions.emplace_back(region, where("Regions") + ", phase '" + name + "'", list->mesh);
       }
     if (image)
       for (const std::string &name : image->names)
         {
-          if (std::find(list->names.begin(), list->names.end(), name) != list->names.end())
+          if (has(list->names, name))
             error("Regions",
                   "the phase '" + name + "' is one of 'Image colors' in section 'Domain', too.");
           list->names.push_back(name);

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/scene/lists.h>
-#include <perideal/scene/scene_notes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,50 +23,36 @@ namespace PeriDeal
   General::General()
     : SceneSection("")
   {
-    declare("Title", EntryType::text, "", "", "Headline of the report.");
-    declare("Dimension", EntryType::whole_number, "2", "1", "Number of dimensions: 1, 2 or 3.");
-    declare(
-      "Physics",
-      EntryType::choice,
-      "heat",
-      "",
+    declare(title, "Title", "")                                = "Headline of the report.";
+    declare(dimension, "Dimension", "2", Bounds::one_to_three) = "Number of dimensions: 1, 2 or 3.";
+    declare(physics, "Physics", "heat", physics_choices()) =
       "Diffusion: heat (temperature), moisture (wetness, the concentration over the saturated one) or electricity "
-      "(potential); or elasticity (displacement).",
-      physics_choices());
-    declare(
-      "Models",
-      EntryType::choices,
-      "finite elements, peridynamics",
-      "",
+      "(potential); or elasticity (displacement).";
+    declare("Models",
+            EntryType::choices,
+            "finite elements, peridynamics",
+            "",
+            {"finite elements", "peridynamics", "coupled", "auto"}) =
       "The models that are run, on the same mesh, and compared: finite elements and peridynamics, each in the whole body, and "
       "`coupled`, peridynamics in the zone of section `Coupling` with finite elements elsewhere. Or `auto` alone: the cheapest model and mesh that "
-      "section `Accuracy` allows.",
-      {"finite elements", "peridynamics", "coupled", "auto"});
-    declare(
-      "Output directory",
-      EntryType::text,
-      "output",
-      "",
+      "section `Accuracy` allows.";
+    declare(output_directory, "Output directory", "output") =
       "Directory of all files that a run writes, relative to the working directory. Results of an "
-      "earlier run in it are replaced.");
+      "earlier run in it are replaced.";
     parse();
   }
 
 
   void General::parse()
   {
-    title            = text("Title");
-    output_directory = text("Output directory");
-    if (output_directory.empty())
-      error("Output directory", "is empty, needs the name of a directory.");
-    dimension = whole_number("Dimension");
-    if (dimension < 1 || dimension > 3)
-      error("Dimension", "found " + text("Dimension") + ", needs 1, 2 or 3.");
-    physics = choice<Physics>("Physics");
+    SceneSection::parse();
+    refuse(output_directory.empty(),
+           "Output directory",
+           "is empty, needs the name of a directory.");
     models.clear();
     const std::vector<unsigned int> chosen    = choice_indices("Models");
     constexpr unsigned int          choose_it = 3;
-    automatic = std::find(chosen.begin(), chosen.end(), choose_it) != chosen.end();
+    automatic                                 = has(chosen, choose_it);
     refuse(
       automatic && chosen.size() > 1,
       "Models",
@@ -112,20 +97,15 @@ namespace PeriDeal
       if (!scene.domain.has_lattice())
         return;
       const auto check = [&](const std::vector<double> &x, const std::string &entry) {
-        Point<dim>  p;
-        std::string coordinates;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            p[d] = x[d];
-            coordinates += (d > 0 ? ", " : "") + number_text(x[d]);
-          }
+        Point<dim> p;
+        std::copy(x.begin(), x.end(), p.begin_raw());
         if (!scene.domain.contains(p))
           entry_error(scene.output.where(entry),
-                      "the point (" + coordinates + ") lies outside the body.");
+                      "the point " + point_text(p) + " lies outside the body.");
         if (entry == "Probes" && !is_in_some_cell(scene.domain, p))
           entry_error(scene.output.where(entry),
-                      "the point (" + coordinates +
-                        ") lies in a hole. Move it into the body, or leave it out.");
+                      "the point " + point_text(p) +
+                        " lies in a hole. Move it into the body, or leave it out.");
       };
       for (const std::vector<double> &probe : scene.output.probes)
         check(probe, "Probes");
@@ -205,7 +185,7 @@ namespace PeriDeal
     if (elasticity.has_full_kinematics() && time.stepper == "newmark")
       {
         elasticity.refuse(
-          elasticity.contact_is_asked,
+          elasticity.contact_is_asked(),
           "Contact",
           "found 'true', which with 'Kinematics = full' is for 'Stepper = verlet' only; 'Stepper' in section 'Time' is 'newmark'. Leave one of them out.");
         elasticity.contact = false;

@@ -47,4 +47,12 @@ namespace PeriDeal
   /** Islands and thin voids of an image: takes them out, holds them, or notes them. */
   template <int dim>
   void check_image(Scene<dim> &scene);
+
+  /**
+   * Appends to the notes of the domain what is allowed, but rarely meant: a body in motion without
+   * a density, velocities beyond that of waves, wetness that is not from 0 to 1, parts that no
+   * condition names. To be called when all is parsed.
+   */
+  template <int dim>
+  void note_doubtful_entries(Scene<dim> &scene);
 } // namespace PeriDeal

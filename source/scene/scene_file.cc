@@ -23,12 +23,6 @@ namespace PeriDeal
     using DeclaredNames = std::map<std::string, std::vector<std::string>>;
 
 
-    std::string in_section(const std::string &section)
-    {
-      return section.empty() ? "outside all sections" : "in section '" + section + "'";
-    }
-
-
     /** All that is declared at present: the scene alive, and the sections that the calling program
      * has added to ParameterAcceptor. */
     DeclaredNames declared_names()
@@ -67,14 +61,13 @@ namespace PeriDeal
     {
       check_section(line.section, at, declared);
       const std::vector<std::string> &known = declared.at(line.section);
-      if (std::find(known.begin(), known.end(), line.entry) != known.end())
+      if (has(known, line.entry))
         return;
       std::string message =
         at + ": unknown entry '" + line.entry + "' " + in_section(line.section) + ".";
       std::string elsewhere;
       for (const auto &section : declared)
-        if (std::find(section.second.begin(), section.second.end(), line.entry) !=
-            section.second.end())
+        if (has(section.second, line.entry))
           elsewhere += (elsewhere.empty() ? "" : ", ") + in_section(section.first);
       if (!elsewhere.empty())
         message += " There is one " + elsewhere + ".";
@@ -294,7 +287,36 @@ namespace PeriDeal
   }
 
 
-  template void parse_scene<1>(const SceneText &, Scene<1> &);
-  template void parse_scene<2>(const SceneText &, Scene<2> &);
-  template void parse_scene<3>(const SceneText &, Scene<3> &);
+  template <int dim>
+  std::shared_ptr<Scene<dim>> scene_variant(const Scene<dim>           &scene,
+                                            const std::vector<Setting> &settings)
+  {
+    const auto                        variant = std::make_shared<Scene<dim>>();
+    const std::vector<SceneSection *> to      = variant->sections(),
+                                      from    = const_cast<Scene<dim> &>(scene).sections();
+    for (std::size_t k = 0; k < from.size(); ++k)
+      *to[k] = *from[k]; // the texts
+    for (const auto &[name, text] : settings)
+      {
+        const std::size_t slash   = name.rfind('/');
+        const std::string section = slash == std::string::npos ? "" : name.substr(0, slash);
+        const auto of_name = std::find_if(to.begin(), to.end(), [&](const SceneSection *const one) {
+          return one->name() == section;
+        });
+        Assert(of_name != to.end(), dealii::ExcMessage("There is no such section."));
+        (*of_name)->set(name.substr(slash + 1), text);
+      }
+    variant->domain.files.folder       = scene.domain.files.folder;
+    variant->domain.files.communicator = scene.domain.files.communicator;
+    variant->parse_and_validate();
+    return variant;
+  }
+
+
+  template void                      parse_scene<1>(const SceneText &, Scene<1> &);
+  template void                      parse_scene<2>(const SceneText &, Scene<2> &);
+  template void                      parse_scene<3>(const SceneText &, Scene<3> &);
+  template std::shared_ptr<Scene<1>> scene_variant(const Scene<1> &, const std::vector<Setting> &);
+  template std::shared_ptr<Scene<2>> scene_variant(const Scene<2> &, const std::vector<Setting> &);
+  template std::shared_ptr<Scene<3>> scene_variant(const Scene<3> &, const std::vector<Setting> &);
 } // namespace PeriDeal

@@ -4,14 +4,13 @@
 // What is allowed, but rarely meant.
 
 #include <perideal/scene/lists.h>
-#include <perideal/scene/scene.h>
-#include <perideal/scene/scene_notes.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
-#include <sstream>
+
+#include "scene_checks.h"
 
 namespace PeriDeal
 {
@@ -23,20 +22,7 @@ namespace PeriDeal
     template <int dim>
     std::string speed_text(const double speed, const Scene<dim> &scene)
     {
-      std::ostringstream text;
-      text.precision(3);
-      text << speed << " " << scene.units.length << "/" << scene.units.time;
-      return text.str();
-    }
-
-
-    /** Whether an entry of a section has its default. */
-    bool is_left_out(const SceneSection &section, const std::string &name)
-    {
-      return std::any_of(
-        section.entries().begin(),
-        section.entries().end(),
-        [&](const Entry &entry) { return entry.name == name && entry.text == entry.default_text; });
+      return rounded_text(speed) + " " + scene.units.length + "/" + scene.units.time;
     }
 
 
@@ -66,7 +52,7 @@ namespace PeriDeal
     template <int dim>
     void note_density(Scene<dim> &scene, const double speed)
     {
-      if (scene.material.phases.gives("Density") || !is_left_out(scene.material, "Density"))
+      if (scene.material.phases.gives("Density") || scene.material.is_given("Density"))
         return;
       scene.domain.notes.push_back(
         "'Density' in section 'Material' is 1, its default" +
@@ -172,7 +158,7 @@ namespace PeriDeal
           "peridynamics ('Boundary treatment = exchange' in section 'Peridynamics')");
       if (runs(scene, ModelKind::coupled) && scene.coupling.exchanges())
         models.emplace_back("coupled ('Scheme = exchange' in section 'Coupling')");
-      if (!models.empty() && !is_left_out(scene.material, "Interface rule"))
+      if (!models.empty() && scene.material.is_given("Interface rule"))
         scene.domain.notes.push_back(
           scene.material.where("Interface rule") + " has no effect on " + join_names(models) +
           ": a bond has the smallest conductivity of the cells on its way there, and where that jumps by more than a factor of 1.5 "

@@ -7,6 +7,7 @@
 #include <perideal/scene/section.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -15,7 +16,24 @@ namespace PeriDeal
   namespace
   {
     const std::vector<std::string> boolean_names = {"true", "false"};
-  }
+    constexpr unsigned int         most_of_all   = 2147483647u; // of whole numbers
+    constexpr double               infinity      = std::numeric_limits<double>::infinity();
+
+
+    std::string needs(const Entry &entry, const std::string &what)
+    {
+      return "found " + entry.text + ", needs " + what + ".";
+    }
+  } // namespace
+
+
+  const Bounds Bounds::none{-infinity, infinity, false, ""};
+  const Bounds Bounds::positive{0., infinity, false, "a number greater than 0"};
+  const Bounds Bounds::fraction{0., 1., false, "a number between 0 and 1"};
+  const Bounds Bounds::not_negative{0., infinity, true, "0 or more"};
+  const Bounds Bounds::one_or_more{1., infinity, true, "1 or more"};
+  const Bounds Bounds::one_to_three{1., 3., true, "1, 2 or 3"};
+  const Bounds Bounds::length{0., infinity, false, "a length greater than 0 (or nothing)"};
 
 
   // An absolute path, so that the section does not depend on what other acceptors are alive
@@ -27,6 +45,8 @@ namespace PeriDeal
 
   void SceneSection::declare_parameters(ParameterHandler &prm)
   {
+    const Patterns::Bool     truth;
+    const Patterns::Anything anything;
     for (const Entry &entry : list)
       {
         std::string documentation = entry.documentation;
@@ -34,17 +54,12 @@ namespace PeriDeal
           documentation += " Choices: " + join_names(entry.choices, " | ") + ".";
         if (!entry.unit.empty())
           documentation += " Unit: " + entry.unit + ".";
-        switch (entry.type)
-          {
-            case EntryType::boolean:
-              prm.declare_entry(entry.name, entry.default_text, Patterns::Bool(), documentation);
-              break;
-            default:
-              prm.declare_entry(entry.name,
-                                entry.default_text,
-                                Patterns::Anything(),
-                                documentation);
-          }
+        prm.declare_entry(entry.name,
+                          entry.default_text,
+                          entry.type == EntryType::boolean ?
+                            static_cast<const Patterns::PatternBase &>(truth) :
+                            anything,
+                          documentation);
       }
   }
 
@@ -56,6 +71,16 @@ namespace PeriDeal
   }
 
 
+  void SceneSection::parse()
+  {
+    for (std::size_t k = 0; k < list.size(); ++k)
+      if (readers[k])
+        readers[k](list[k]);
+      else
+        check_plain_value(list[k], list[k].text, where(list[k].name));
+  }
+
+
   void SceneSection::set(const std::string &entry, const std::string &text)
   {
     const_cast<Entry &>(find(entry)).text = trimmed(text);
@@ -64,8 +89,7 @@ namespace PeriDeal
 
   std::string SceneSection::where(const std::string &entry) const
   {
-    return "'" + entry + "' " +
-           (section.empty() ? "outside all sections" : "in section '" + section + "'");
+    return "'" + entry + "' " + in_section(section);
   }
 
 
@@ -78,14 +102,102 @@ namespace PeriDeal
   }
 
 
-  void SceneSection::declare(const std::string              &name,
-                             const EntryType                 type,
-                             const std::string              &default_text,
-                             const std::string              &unit,
-                             const std::string              &documentation,
-                             const std::vector<std::string> &choices)
+  std::string &SceneSection::bind(const Entry &entry, const Reader &read)
   {
-    list.push_back({name, type, default_text, unit, documentation, choices, default_text});
+    list.push_back(entry);
+    list.back().text = entry.default_text;
+    readers.push_back(read);
+    if (read)
+      read(list.back());
+    return list.back().documentation;
+  }
+
+
+  std::string &SceneSection::declare(const std::string &name,
+                                     const EntryType    type,
+                                     const std::string &default_text,
+                                     const std::string &unit,
+                                     const Choices     &choices)
+  {
+    return bind({name, type, default_text, unit, "", choices, ""}, {});
+  }
+
+
+  std::string &SceneSection::declare(double            &member,
+                                     const std::string &name,
+                                     const std::string &default_text,
+                                     const std::string &unit,
+                                     const Bounds      &bounds)
+  {
+    return bind({name, EntryType::number, default_text, unit, "", {}, ""},
+                [this, &member, bounds](const Entry &entry) {
+                  member = parse_number(entry.text, where(entry.name));
+                  refuse(!bounds.hold(member), entry.name, needs(entry, bounds.needs));
+                });
+  }
+
+
+  std::string &SceneSection::declare_if_given(double            &member,
+                                              const std::string &name,
+                                              const std::string &default_text,
+                                              const std::string &unit,
+                                              const Bounds      &bounds)
+  {
+    return bind({name, EntryType::text, default_text, unit, "", {}, ""},
+                [this, &member, bounds](const Entry &entry) {
+                  const std::string &word = entry.default_text;
+                  member                  = -1.;
+                  if (entry.text == word)
+                    return;
+                  refuse(!word.empty() &&
+                           entry.text.find_first_of("0123456789") == std::string::npos,
+                         entry.name,
+                         "found '" + entry.text + "', needs '" + word + "' or a number.");
+                  member = parse_number(entry.text, where(entry.name));
+                  refuse(!bounds.hold(member),
+                         entry.name,
+                         needs(entry, (word.empty() ? "" : "'" + word + "' or ") + bounds.needs));
+                });
+  }
+
+
+  std::string &SceneSection::declare(unsigned int      &member,
+                                     const std::string &name,
+                                     const std::string &default_text,
+                                     const Bounds      &bounds)
+  {
+    return bind({name, EntryType::whole_number, default_text, "1", "", {}, ""},
+                [this, &member, bounds](const Entry &entry) {
+                  member = parse_whole_number(entry.text, where(entry.name), most_of_all);
+                  refuse(!bounds.hold(member), entry.name, needs(entry, bounds.needs));
+                });
+  }
+
+
+  std::string &SceneSection::declare(bool              &member,
+                                     const std::string &name,
+                                     const std::string &default_text)
+  {
+    return bind({name, EntryType::boolean, default_text, "", "", {}, ""},
+                [this, &member](const Entry &entry) {
+                  member = choice_of(entry.text, boolean_names, where(entry.name)) == 0;
+                });
+  }
+
+
+  std::string &SceneSection::declare(std::string       &member,
+                                     const std::string &name,
+                                     const std::string &default_text,
+                                     const Choices     &choices,
+                                     const std::string &unit)
+  {
+    const EntryType type = choices.empty() ? EntryType::text : EntryType::choice;
+    return bind({name, type, default_text, unit, "", choices, ""},
+                [this, &member](const Entry &entry) {
+                  if (entry.type == EntryType::choice)
+                    choice_index(entry); // for its errors
+                  member = entry.text;
+                });
   }
 
 
@@ -101,55 +213,13 @@ namespace PeriDeal
   }
 
 
-  double SceneSection::number(const std::string &entry) const
-  {
-    return parse_number(text(entry), where(entry));
-  }
-
-
-  double SceneSection::positive_number(const std::string &entry) const
-  {
-    const double value = number(entry);
-    if (!(value > 0.))
-      error(entry, "found " + text(entry) + ", needs a number greater than 0.");
-    return value;
-  }
-
-
-  unsigned int SceneSection::whole_number(const std::string &entry) const
-  {
-    return parse_whole_number(text(entry), where(entry), 2147483647u);
-  }
-
-
-  bool SceneSection::boolean(const std::string &entry) const
-  {
-    return choice_of(text(entry), boolean_names, where(entry)) == 0;
-  }
-
-
-  double SceneSection::fraction(const std::string &entry) const
-  {
-    const double value = number(entry);
-    if (!(value > 0. && value < 1.))
-      error(entry, "found " + text(entry) + ", needs a number between 0 and 1.");
-    return value;
-  }
-
-
-  const std::string &SceneSection::choice_name(const std::string &entry) const
-  {
-    return find(entry).choices[choice_index(entry)];
-  }
-
-
   std::vector<unsigned int> SceneSection::choice_indices(const std::string &entry) const
   {
     std::vector<unsigned int> indices;
     for (const std::string &piece : split_list(text(entry), ','))
       {
         const unsigned int index = choice_of(piece, find(entry).choices, where(entry));
-        if (std::find(indices.begin(), indices.end(), index) != indices.end())
+        if (has(indices, index))
           error(entry, "'" + piece + "' is named twice.");
         indices.push_back(index);
       }
@@ -159,15 +229,26 @@ namespace PeriDeal
   }
 
 
+  void SceneSection::refuse_unless_elastic(const std::string &entry,
+                                           const Physics      physics,
+                                           const std::string &remedy) const
+  {
+    refuse(physics != Physics::elasticity && is_given(entry),
+           entry,
+           "is for 'Physics = elasticity'; 'Physics' is '" + names_of(physics).physics + "'." +
+             remedy);
+  }
+
+
   void SceneSection::error(const std::string &entry, const std::string &what) const
   {
     entry_error(where(entry), what);
   }
 
 
-  unsigned int SceneSection::choice_index(const std::string &entry) const
+  unsigned int SceneSection::choice_index(const Entry &entry) const
   {
-    return choice_of(text(entry), find(entry).choices, where(entry));
+    return choice_of(entry.text, entry.choices, where(entry.name));
   }
 
 
@@ -189,7 +270,7 @@ namespace PeriDeal
           parse_number(text, where);
           break;
         case EntryType::whole_number:
-          parse_whole_number(text, where, 2147483647u);
+          parse_whole_number(text, where, most_of_all);
           break;
         case EntryType::boolean:
           choice_of(text, boolean_names, where);
@@ -200,6 +281,12 @@ namespace PeriDeal
         default:
           break;
       }
+  }
+
+
+  std::string in_section(const std::string &section)
+  {
+    return section.empty() ? "outside all sections" : "in section '" + section + "'";
   }
 
 

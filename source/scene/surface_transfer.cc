@@ -7,8 +7,41 @@
 
 namespace PeriDeal
 {
-  // Each in a file of its name.
-  TransferKind flux(), convection();
+  namespace
+  {
+    TransferKind flux()
+    {
+      return {"Flux",
+              "power/area",
+              "Given heat fluxes, positive into the body: `side: formula of x, y, z, t`, several "
+              "separated by `;`. A side named nowhere is insulated.",
+              {"flux"},
+              "flux",
+              false,
+              [](SurfaceTransfer &transfer, const std::string &) {
+                transfer.flux = transfer.formulas[0];
+              }};
+    }
+
+
+    TransferKind convection()
+    {
+      return {
+        "Convection",
+        "power/(area temperature), temperature",
+        "`side: coefficient, ambient temperature`, several separated by `;`: the flux "
+        "coefficient x (ambient - T) enters. The coefficient may depend on x, y, z, the ambient temperature on t, too. "
+        "Adds to a Flux on the same side.",
+        {"coefficient", "ambient value"},
+        "convection",
+        true,
+        [](SurfaceTransfer &transfer, const std::string &) {
+          transfer.coefficient = transfer.formulas[0];
+          transfer.ambient     = transfer.formulas[1];
+        }};
+    }
+  } // namespace
+
 
   std::deque<TransferKind> &transfer_kinds()
   {

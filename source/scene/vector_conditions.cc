@@ -4,7 +4,6 @@
 // Displacements and tractions of section `Boundary conditions`.
 
 #include <perideal/scene/boundary_conditions.h>
-#include <perideal/scene/known_variables.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -106,7 +105,8 @@ namespace PeriDeal
                         const unsigned int dim,
                         const bool         may_be_free,
                         const std::string &where,
-                        VectorCondition   &condition)
+                        VectorCondition   &condition,
+                        const std::string &known)
   {
     const std::vector<std::string> pieces = split_list(text, ',');
     if (pieces.size() != dim)
@@ -130,11 +130,8 @@ namespace PeriDeal
         if (pieces[c] == free_word)
           continue;
         if (!branch.held.empty())
-          {
-            const KnownVariables known("x, y, z");
-            condition.held[c] = Expression(branch.held, at);
-          }
-        condition.values[c] = Expression(branch.value, at);
+          condition.held[c] = Expression(branch.held, at, "x, y, z");
+        condition.values[c] = Expression(branch.value, at, known);
         if (branch.held.empty())
           continue;
         if (condition.held[c]->depends_on_time())
@@ -158,10 +155,11 @@ namespace PeriDeal
 
   std::vector<Expression> parse_vector(const std::string &text,
                                        const unsigned int dim,
-                                       const std::string &where)
+                                       const std::string &where,
+                                       const std::string &known)
   {
     VectorCondition condition;
-    parse_components(text, dim, false, where, condition);
+    parse_components(text, dim, false, where, condition, known);
     std::vector<Expression> list;
     for (const auto &value : condition.values)
       list.push_back(*value);

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/scene/checkpoint_control.h>
+#include <perideal/scene/control.h>
 
 #include <mpi.h>
 

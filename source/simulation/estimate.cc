@@ -11,7 +11,7 @@
 #include <perideal/problems/problem_factory.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/scene_variant.h>
+#include <perideal/scene/scene.h>
 #include <perideal/simulation/estimate.h>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/problems/problem.h>
 #include <perideal/problems/result_record.h>
-#include <perideal/scene/guard_control.h>
+#include <perideal/scene/control.h>
 
 #include <nlohmann/json.hpp>
 

@@ -14,8 +14,8 @@
 #include <perideal/problems/reference.h>
 #include <perideal/problems/result_record.h>
 #include <perideal/problems/run_context.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/with_formulas.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 

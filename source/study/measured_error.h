@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/scene/accuracy.h>
+#include <perideal/scene/control.h>
 #include <perideal/simulation/simulation.h>
 
 #include <map>

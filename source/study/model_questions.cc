@@ -8,7 +8,7 @@
 #include <perideal/problems/diffusion_bounds.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
-#include <perideal/scene/with_formulas.h>
+#include <perideal/scene/expression.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_bounds.h>

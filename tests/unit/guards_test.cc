@@ -7,8 +7,8 @@
 
 #include <perideal/base/worst_trip.h>
 #include <perideal/problems/guards.h>
+#include <perideal/scene/expression.h>
 #include <perideal/scene/not_positive.h>
-#include <perideal/scene/with_formulas.h>
 #include <perideal/solvers/motion_stepper.h>
 #include <perideal/solvers/stepper.h>
 

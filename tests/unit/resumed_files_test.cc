@@ -8,7 +8,7 @@
 #include <perideal/output/crack_writer.h>
 #include <perideal/output/summary_file.h>
 #include <perideal/output/tables.h>
-#include <perideal/scene/checkpoint_control.h>
+#include <perideal/scene/control.h>
 
 #include <cmath>
 #include <csignal>

@@ -218,8 +218,6 @@ namespace PeriDeal
 
     void parse_symmetry();
 
-    double parse_layer(const std::string &entry) const;
-
     std::vector<VectorCondition> parse_vectors(const std::string &entry);
 
     void refuse_other_physics(const Physics physics, const bool with_heat) const;

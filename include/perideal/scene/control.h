@@ -20,14 +20,11 @@ namespace PeriDeal
   public:
     TimeControl();
 
-    bool   steady   = false;
-    double end_time = 1.;
-    // auto | euler | rk4 | rkc2 | chebyshev | crank nicolson | bdf2 | sdirk2 | verlet | newmark
-    std::string stepper   = "auto";
-    double      time_step = -1.; // negative: auto
-    double      tolerance = 1e-4;
-
-    void parse();
+    bool        steady;
+    double      end_time;
+    std::string stepper;
+    double      time_step; // negative: auto
+    double      tolerance;
   };
 
 
@@ -37,15 +34,12 @@ namespace PeriDeal
   public:
     SolverControlParameters();
 
-    double       tolerance      = 1e-10;
-    unsigned int max_iterations = 1000;
-    unsigned int direct_up_to   = 2000;  // unknowns of a level of multigrid
-    bool         limit_given    = false; // max_iterations
+    double       tolerance;
+    unsigned int max_iterations;
+    unsigned int direct_up_to; // unknowns of a level of multigrid
 
     /** Of an equilibrium: max_iterations, or what the methods with cheap iterations need. */
     unsigned int most_iterations(const ElasticSolver elastic_solver) const;
-
-    void parse();
   };
 
 
@@ -88,6 +82,97 @@ namespace PeriDeal
   };
 
 
+  /** Section `Checkpoint`: when the state of a run is kept, and how many such states are. */
+  class CheckpointControl : public SceneSection
+  {
+  public:
+    CheckpointControl();
+
+    double              every           = 600.; // seconds of wall time; 0: none
+    double              wall_time_limit = 0.;   // seconds; 0: none
+    std::vector<double> times;                  // simulated, sorted
+    unsigned int        n_kept;
+
+    /** Throws UserError. @param end_time the last of `Times` at most; a steady scene has none. */
+    void parse(const double end_time, const bool steady);
+
+  private:
+    double duration(const std::string &entry) const;
+  };
+
+
+  /**
+   * Seconds of a duration with its unit, `90 s`, `1.5 min` or `8 h`, or `0`; negative if the text
+   * is none.
+   */
+  double seconds_of(const std::string &text);
+
+
+  /** What a run does when its state is found to be none. */
+  enum class GuardAction
+  {
+    stop,
+    warn,
+    off // nothing is looked for
+  };
+
+
+  /** Section `Guards`. */
+  class GuardControl : public SceneSection
+  {
+  public:
+    GuardControl();
+
+    GuardAction action;
+
+    /** What solvers find wrong, and could go on from, does not end the run. */
+    bool goes_on() const
+    {
+      return action != GuardAction::stop;
+    }
+  };
+
+
+  /** In what the accuracy that section `Accuracy` asks for is measured. */
+  enum class AccuracyMeasure
+  {
+    field,           // root mean square of the error over the body
+    probes,          // largest error at the points of `Probes`
+    flow,            // of what enters through a side
+    stress_intensity // largest of all ends of cracks
+  };
+
+
+  /** Section `Accuracy`: what `Models = auto` has to reach, and what it may take. */
+  class AccuracyControl : public SceneSection
+  {
+  public:
+    AccuracyControl();
+
+    double          tolerance; // relative to the range of the values, or to the value
+    AccuracyMeasure measure = AccuracyMeasure::field;
+    std::string     side;         // of a flow
+    double          budget;       // seconds of wall time; negative: none
+    double          memory = -1.; // bytes; negative: what the machine has free
+
+    /** Throws UserError. */
+    void parse();
+
+    /** As the entry has it. */
+    std::string measure_text() const
+    {
+      return text("Measure");
+    }
+  };
+
+
+  /**
+   * Bytes of a size with its unit, `500 MB` or `4 GB` (powers of 1000); negative if the text is
+   * none.
+   */
+  double bytes_of(const std::string &text);
+
+
   /** Section `Reference`: the exact solution to compare with. */
   class Reference : public SceneSection
   {
@@ -95,8 +180,6 @@ namespace PeriDeal
     Reference();
 
     std::string solution; // expression of x, y, z, t or the name of an exact solution; empty: none
-
-    void parse();
   };
 
 
@@ -106,12 +189,9 @@ namespace PeriDeal
   public:
     Units();
 
-    std::string length = "m", time = "s", temperature = "K", potential = "V", force = "N", energy,
-                mass = "kg", current = "A";
+    std::string length, time, temperature, potential, force, energy, mass, current;
 
     /** Of the unknown field. */
     std::string of_field(const Physics physics) const;
-
-    void parse();
   };
 } // namespace PeriDeal

@@ -33,15 +33,14 @@ namespace PeriDeal
   public:
     CouplingControl();
 
-    CouplingScheme scheme = CouplingScheme::exchange;
-    ZoneKind       zone   = ZoneKind::near_cracks;
-    double         width  = 1.;      // of the zone on each side of a crack, in horizons
-    Expression     formula;          // in the zone where greater than 0
-    double         overlap     = 0.; // in horizons
-    bool           certificate = true;
-    double         adaptive_tolerance =
-      0.02;                  // of the zone `adaptive`: relative error of the flux, by recovery
-    double zone_share = 0.5; // of the zone `follow`: of the critical stretch
+    CouplingScheme scheme;
+    ZoneKind       zone  = ZoneKind::near_cracks;
+    double         width = 1.; // of the zone on each side of a crack, in horizons
+    Expression     formula;    // in the zone where greater than 0
+    double         overlap;    // in horizons
+    bool           certificate;
+    double adaptive_tolerance; // of the zone `adaptive`: relative error of the flux, by recovery
+    double zone_share;         // of the zone `follow`: of the critical stretch
 
     /**
      * Throws UserError for a zone that is none, a width or an overlap below 0, contradicting

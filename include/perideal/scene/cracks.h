@@ -59,12 +59,12 @@ namespace PeriDeal
     std::vector<std::vector<dealii::Point<dim>>>
                                cracks; // before they grow; a segment that grows may have no length
     std::vector<CrackTip<dim>> tips;   // that move
-    CrackMesh                  mesh            = CrackMesh::pairs;
-    ThroughTips                through_tips    = ThroughTips::automatic;
-    NodesOnCracks              nodes_on_cracks = NodesOnCracks::avoid;
-    Expression                 transmission;              // of t alone
-    double                     contact_conductance = -1.; // negative: not given
-    double                     growth_step         = -1.; // length; negative: not given
+    CrackMesh                  mesh;
+    ThroughTips                through_tips;
+    NodesOnCracks              nodes_on_cracks;
+    Expression                 transmission;        // of t alone
+    double                     contact_conductance; // negative: not given
+    double                     growth_step;         // length; negative: not given
     double end_time = 0.; // of the run, 0 if it has no time; from section `Time`
 
     /**
@@ -143,8 +143,6 @@ namespace PeriDeal
     [[noreturn]] void tip_error(const CrackTip<dim> &tip, const std::string &what) const;
 
   private:
-    void declare_growth();
-
     void parse_segments();
 
     void parse_polygons();

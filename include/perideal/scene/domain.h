@@ -66,7 +66,7 @@ namespace PeriDeal
   public:
     Domain();
 
-    Shape                         shape = Shape::box;
+    Shape                         shape;
     dealii::Point<dim>            lower, upper; // with the extra layers, as cells
     std::array<unsigned int, dim> cells;
     NodePlacement                 nodes = NodePlacement::vertices;
@@ -76,7 +76,7 @@ namespace PeriDeal
     /** Cells are merged, so many times, away from where they stay fine. */
     struct Coarsening
     {
-      unsigned int times = 0;
+      unsigned int times;
       Expression   fine;               // they stay fine where it is greater than 0
       bool         by_formula = false; // else, unless at the ends, in the zone of `Coupling`
       bool         at_ends    = false; // at the ends of cracks, in 3D their edges
@@ -101,7 +101,7 @@ namespace PeriDeal
     /** Parts of an image that nothing joins to the rest. */
     struct Islands
     {
-      IslandRule            rule            = IslandRule::error;
+      IslandRule            rule;
       bool                  cells_are_given = false; // by the body whose heat this is
       std::vector<Pin<dim>> pins;                    // set by Scene
     };
@@ -193,13 +193,12 @@ namespace PeriDeal
     void parse_hole();
     void parse_listed_holes();
 
-    void declare_extra_layers();
     void parse_extra_layers();
 
-    void declare_image();
-    void parse_image();
-    void refuse_image_entries() const;
-    void set_size_of_image();
+    unsigned int count(const std::string &entry) const;
+    void         parse_image();
+    void         refuse_image_entries() const;
+    void         set_size_of_image();
 
     bool own_mesh = false;
   };

@@ -8,6 +8,7 @@
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
+#include <optional>
 #include <string>
 
 namespace PeriDeal
@@ -18,20 +19,19 @@ namespace PeriDeal
   public:
     ElasticityControl();
 
-    ElasticModel model        = ElasticModel::state_based;
-    Micromodulus micromodulus = Micromodulus::family; // bond-based only
-    PlaneState   plane        = PlaneState::stress;   // two dimensions only
-    Kinematics   kinematics   = Kinematics::linear;
+    ElasticModel model;
+    Micromodulus micromodulus; // bond-based only
+    PlaneState   plane;        // two dimensions only
+    Kinematics   kinematics;
     // Of x, y, z; what strains the body is this times `Thermal expansion`; 0 where it is computed.
     Expression    temperature_change;
-    bool          computes_temperature  = false; // by the heat problem of the same scene
-    double        reference_temperature = 0.;    // of the unstressed body, where it is computed
-    double        broken_bonds_conduct  = 0.;    // of heat: their transmission, 0 to 1
-    bool          contact               = true;  // faces of cracks bear pressure where they can
-    bool          contact_is_asked      = false; // 'true' is given
-    ElasticSolver solver                = ElasticSolver::linear;
-    bool          multigrid             = true; // entry `Preconditioner`
-    bool          breaks_in_motion      = true; // bonds of bodies at rest, entry `Breaking`
+    bool          computes_temperature = false; // by the heat problem of the same scene
+    double        reference_temperature;        // of the unstressed body, where it is computed
+    double        broken_bonds_conduct;         // of heat: their transmission, 0 to 1
+    bool          contact = true;               // faces of cracks bear pressure where they can
+    ElasticSolver solver;
+    /** Absolute temperature of the unstressed body, with `Heat of deformation` only. */
+    std::optional<double> absolute_reference;
 
     bool is_bond_based() const
     {
@@ -44,15 +44,37 @@ namespace PeriDeal
     /** All solvers but `dynamics` find the equilibrium, in which there is no time. */
     bool is_static() const;
 
+    /** `Contact = true` is given. */
+    bool contact_is_asked() const
+    {
+      return text("Contact") == "true";
+    }
+
+    /** Of `Solver = conjugate gradients`: it is preconditioned. */
+    bool multigrid() const
+    {
+      return text("Preconditioner") == "multigrid";
+    }
+
+    /** What bonds of bodies at rest do once the first have broken. */
+    bool breaks_in_motion() const
+    {
+      return text("Breaking") != "at rest";
+    }
+
     /** `conjugate gradients` and so on, as in scenes. */
     const std::string &solver_name() const;
 
     /**
      * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there
      * is none, full kinematics by the linear solver or with `Contact = true`, `Breaking` of a body
-     * in motion, a temperature change that depends on t or is computed for a body in motion, and
-     * with another physics any entry that is given.
+     * in motion, a temperature change that depends on t or is computed for a body in motion,
+     * `Heat of deformation` without a temperature that is computed or an `Absolute zero` below
+     * `Reference temperature`, and with another physics any entry that is given.
      */
     void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);
+
+  private:
+    void parse_heat_of_deformation();
   };
 } // namespace PeriDeal

@@ -36,12 +36,15 @@ namespace PeriDeal
 
     /**
      * @param text  the formula
-     * @param with_temperature T is a variable, too
      * @param where entry and section for messages, for example "'Source' in section 'Initial and
-     * source'" Throws UserError with the position and what is wrong.
+     *              source'" Throws UserError with the position and what is wrong.
+     * @param known the variables that messages list. That a formula has no others (t where nothing
+     *              may change) is for the one who reads it to ask.
+     * @param with_temperature T is a variable, too
      */
     Expression(const std::string &text,
                const std::string &where,
+               const std::string &known            = "x, y, z, t",
                const bool         with_temperature = false);
 
     /**
@@ -72,7 +75,7 @@ namespace PeriDeal
     const std::string &text() const;
 
   private:
-    void compile(const bool with_temperature);
+    void compile(const std::string &known, const bool with_temperature);
 
     template <int dim>
     void not_finite(const dealii::Point<dim> &p, const double t, const double temperature) const;
@@ -120,4 +123,11 @@ namespace PeriDeal
     friend void report_formula_error(const std::string &message);
     std::string message;
   };
+
+  /**
+   * Do what asks formulas for values: those that are none there become everybody's UserError when
+   * it has been done, so that no process waits for another that has thrown. Not within itself.
+   * Collective.
+   */
+  void with_formulas(const MPI_Comm communicator, const std::function<void()> &action);
 } // namespace PeriDeal

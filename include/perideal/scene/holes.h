@@ -85,7 +85,7 @@ namespace PeriDeal
   {
     bool               has_one = false; // that of the four below
     dealii::Point<dim> center;
-    double             radius = 0.25;
+    double             radius = 0.;
     HoleShape          shape  = HoleShape::circle;
     double             angle  = 0.; // degrees
     std::vector<Hole>  listed;

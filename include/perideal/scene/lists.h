@@ -7,6 +7,7 @@
 
 #include <perideal/base/user_error.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,10 +37,35 @@ namespace PeriDeal
   std::pair<std::string, std::string> name_and_value(const std::string &text,
                                                      const std::string &where);
 
+  /** Whether a value is one of the list. */
+  template <typename List, typename Value>
+  bool has(const List &list, const Value &value)
+  {
+    return std::find(list.begin(), list.end(), value) != list.end();
+  }
+
   /**
    * What to add to a message where @p n words stand without the commas that lists need, or nothing.
    */
   std::string hint_at_commas(const std::string &text, const unsigned int n);
+
+  /**
+   * A name as it is: without the double quotation marks around it, between which separators and
+   * the word `if` are letters like others. Blanks around it are to be gone.
+   */
+  inline std::string unquoted(const std::string &name)
+  {
+    const bool is_quoted = name.size() > 1 && name.front() == '"' &&
+                           name.find('"', 1) == name.size() - 1;
+    return is_quoted ? name.substr(1, name.size() - 2) : name;
+  }
+
+
+  /** The name as a list of a scene has to have it. */
+  inline std::string quoted_if_needed(const std::string &name)
+  {
+    return name.find_first_of(":;,()|") == std::string::npos ? name : '"' + name + '"';
+  }
 
   /** A finite decimal number and nothing else. */
   double parse_number(const std::string &text, const std::string &where);
@@ -82,6 +108,16 @@ namespace PeriDeal
 
   /** Shortest decimal text that reads back as the same number, as far as 12 digits allow. */
   std::string number_text(const double value);
+
+  /** "(1, 0.5)" */
+  template <int dim>
+  std::string point_text(const dealii::Point<dim> &p)
+  {
+    std::string text = "(";
+    for (unsigned int d = 0; d < dim; ++d)
+      text += (d > 0 ? ", " : "") + number_text(p[d]);
+    return text + ")";
+  }
 
   /** With so many digits, as people read numbers in a sentence. */
   std::string rounded_text(const double value, const int n_digits = 3);

@@ -27,8 +27,8 @@ namespace PeriDeal
     Material();
 
     MaterialProperty conductivity, density, heat_capacity, saturated_concentration;
-    bool             stores         = true; // the storage is not 0
-    InterfaceRule    interface_rule = InterfaceRule::arithmetic;
+    bool             stores = true; // the storage is not 0
+    InterfaceRule    interface_rule;
     Phases           phases;
 
     MaterialProperty                thermal_expansion; // strain per temperature
@@ -91,8 +91,6 @@ namespace PeriDeal
     void require_storage();
 
   private:
-    void declare_elasticity();
-
     Expression read(const std::string &entry, const Physics physics) const;
 
     /** The storage may be 0 as far as this entry goes. */

@@ -17,21 +17,21 @@ namespace PeriDeal
   public:
     Peridynamics();
 
-    double              horizon_ratio        = 3.;  // m, used when horizon is not given
-    double              horizon              = -1.; // length; negative: not given
-    KernelShape         kernel               = KernelShape::conical;
-    unsigned int        kernel_exponent      = 2;
-    VolumeFraction      volume_fraction      = VolumeFraction::linear;
-    Calibration         calibration          = Calibration::discrete;
-    SelfTerm            self_term            = SelfTerm::none;
-    NodalVolume         nodal_volume         = NodalVolume::partial;
-    BoundaryTreatment   treatment            = BoundaryTreatment::automatic; // resolved by Scene
-    unsigned int        layer_rows           = 1;
-    FluxTreatment       flux_treatment       = FluxTreatment::natural;
-    SurfaceCorrection   surface_correction   = SurfaceCorrection::none;
-    CorrectionDirection correction_direction = CorrectionDirection::both;
-    BondsAcrossVoids    across_voids         = BondsAcrossVoids::automatic;
-    OperatorForm form = OperatorForm::automatic; // entry `Operator form` = auto | lattice | stored
+    double              horizon_ratio; // m, used when horizon is not given
+    double              horizon;       // length; negative: not given
+    KernelShape         kernel;
+    unsigned int        kernel_exponent = 2;
+    VolumeFraction      volume_fraction;
+    Calibration         calibration;
+    SelfTerm            self_term;
+    NodalVolume         nodal_volume;
+    BoundaryTreatment   treatment; // resolved by Scene
+    unsigned int        layer_rows;
+    FluxTreatment       flux_treatment;
+    SurfaceCorrection   surface_correction;
+    CorrectionDirection correction_direction;
+    BondsAcrossVoids    across_voids;
+    OperatorForm        form;
 
     /** Fluxes are sources in the outermost nodes: no values there follow from others. */
     bool natural_fluxes() const
@@ -70,11 +70,6 @@ namespace PeriDeal
 
     /** Throws UserError for values out of range and contradicting entries. */
     void parse(const Physics physics = Physics::heat);
-
-  private:
-    void declare_quadrature();
-
-    void declare_boundary();
   };
 
 
@@ -84,7 +79,7 @@ namespace PeriDeal
   public:
     FiniteElements();
 
-    unsigned int degree              = 1;
+    unsigned int degree;
     bool         consistent_capacity = false;
 
     /** @param with_heat an elastic body has a temperature that is computed */

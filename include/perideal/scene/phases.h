@@ -162,10 +162,14 @@ namespace PeriDeal
 
   const MaterialEntry &material_entry(const std::string &name);
 
-  /** A formula of such an entry. Throws UserError if it depends on t, or on T where it may not. */
+  /**
+   * A formula of such an entry. Throws UserError if it depends on t, or on T where it may not, and
+   * for numbers that are not positive where they have to be, or at least 0 (@p may_vanish).
+   */
   Expression material_formula(const std::string   &text,
                               const MaterialEntry &entry,
                               const bool           elastic,
+                              const bool           may_vanish,
                               const std::string   &where);
 
 

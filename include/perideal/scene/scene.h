@@ -3,19 +3,17 @@
 
 #pragma once
 
-#include <perideal/scene/accuracy.h>
 #include <perideal/scene/body_parameters.h>
-#include <perideal/scene/checkpoint_control.h>
 #include <perideal/scene/control.h>
-#include <perideal/scene/guard_control.h>
+#include <perideal/scene/lists.h>
 #include <perideal/scene/physics.h>
 
 #include <mpi.h>
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -38,8 +36,8 @@ namespace PeriDeal
     General();
 
     std::string            title, output_directory;
-    Physics                physics   = Physics::heat;
-    unsigned int           dimension = 2;
+    Physics                physics;
+    unsigned int           dimension;
     std::vector<ModelKind> models;            // in the order the user named them
     bool                   automatic = false; // `Models = auto`; models are finite elements then
 
@@ -131,7 +129,7 @@ namespace PeriDeal
   bool runs(const Scene<dim> &scene, const ModelKind model)
   {
     const std::vector<ModelKind> &models = scene.general.models;
-    return std::find(models.begin(), models.end(), model) != models.end();
+    return has(models, model);
   }
 
 
@@ -160,6 +158,17 @@ namespace PeriDeal
   /** Second pass: the entries into the scene, then parse_and_validate(); parse_computable(). */
   template <int dim>
   void parse_scene(const SceneText &text, Scene<dim> &scene);
+
+  /** An entry as overrides name it, "Section/Entry" or "Entry", and its text. */
+  using Setting = std::pair<std::string, std::string>;
+
+  /**
+   * A scene with the texts of another one but for some entries, parsed and checked. Both can live
+   * on. Throws UserError.
+   */
+  template <int dim>
+  std::shared_ptr<Scene<dim>> scene_variant(const Scene<dim>           &scene,
+                                            const std::vector<Setting> &settings);
 
   /**
    * Do something, and put file and line of the entry that a UserError names before its message.

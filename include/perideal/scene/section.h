@@ -5,7 +5,11 @@
 
 #include <deal.II/base/parameter_acceptor.h>
 
+#include <perideal/scene/physics.h>
+
+#include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace PeriDeal
@@ -39,9 +43,33 @@ namespace PeriDeal
   };
 
 
+  /** What a number has to be; messages say "found 0, needs <needs>." */
+  struct Bounds
+  {
+    double      least, most;
+    bool        with_ends; // which may be taken
+    const char *needs;
+
+    bool hold(const double value) const
+    {
+      return with_ends ? value >= least && value <= most : value > least && value < most;
+    }
+
+    /** The same in other words. */
+    Bounds saying(const char *words) const
+    {
+      return {least, most, with_ends, words};
+    }
+
+    static const Bounds none, positive, fraction, not_negative, one_or_more, one_to_three, length;
+  };
+
+
   /**
    * One section of a scene file. A section keeps the texts of its entries and turns them into
-   * values in its parse(), where all mistakes become UserErrors that name the entry.
+   * values in parse(), where all mistakes become UserErrors that name the entry. An entry is
+   * declared with the member that has its value; what joins several entries, or is no plain value,
+   * is added by the parse() of the section itself.
    *
    * Entries are declared and read through the virtual functions of ParameterAcceptor rather than by
    * add_parameter(): that one would leave pointers to members in the global ParameterAcceptor::prm,
@@ -56,7 +84,10 @@ namespace PeriDeal
 
     SceneSection(const SceneSection &) = delete;
 
-    /** Takes over the texts of another section of the same name; values are members' own. */
+    /**
+     * Takes over the texts of another section of the same name; values are members' own, and
+     * entries stay bound to those of this section.
+     */
     SceneSection &operator=(const SceneSection &other)
     {
       list = other.list;
@@ -66,6 +97,9 @@ namespace PeriDeal
     void declare_parameters(dealii::ParameterHandler &prm) override;
 
     void parse_parameters(dealii::ParameterHandler &prm) override;
+
+    /** The texts of the entries that are declared with a member into these. Throws UserError. */
+    void parse();
 
     /** The name of the section as users write it; empty outside all sections. */
     const std::string &name() const
@@ -80,6 +114,9 @@ namespace PeriDeal
 
     const std::string &text(const std::string &entry) const;
 
+    /** Whether the text of an entry differs from its default. */
+    bool is_given(const std::string &entry) const;
+
     /**
      * Give an entry its text, as a scene file would; call parse() of the section (or of the scene)
      * afterwards.
@@ -93,40 +130,59 @@ namespace PeriDeal
     void refuse(const bool fault, const std::string &entry, const std::string &what) const;
 
   protected:
-    /** Declare an entry. Called in constructors. */
-    void declare(const std::string              &name,
-                 const EntryType                 type,
-                 const std::string              &default_text,
-                 const std::string              &unit,
-                 const std::string              &documentation,
-                 const std::vector<std::string> &choices = {});
+    using Choices = std::vector<std::string>;
 
-    /** Whether the text of an entry differs from its default. */
-    bool is_given(const std::string &entry) const;
-
-    double number(const std::string &entry) const;
-
-    /** A number > 0. */
-    double positive_number(const std::string &entry) const;
-
-    unsigned int whole_number(const std::string &entry) const;
-
-    bool boolean(const std::string &entry) const;
-
-    /**
-     * Position of the text among the entry's choices; enums list their values in the same order.
+    /*
+     * Declare an entry, in constructors: what is returned is its documentation, to be assigned.
+     * With a member it gets the value of the default, and that of the text in parse().
      */
-    template <typename Enum>
-    Enum choice(const std::string &entry) const
+
+    /** One whose text the section itself reads. */
+    std::string &declare(const std::string &name,
+                         const EntryType    type,
+                         const std::string &default_text = "",
+                         const std::string &unit         = "",
+                         const Choices     &choices      = {});
+
+    std::string &declare(double            &member,
+                         const std::string &name,
+                         const std::string &default_text,
+                         const std::string &unit,
+                         const Bounds      &bounds = Bounds::none);
+
+    /** A number that may be left out, by the text of the default: -1 then. */
+    std::string &declare_if_given(double            &member,
+                                  const std::string &name,
+                                  const std::string &default_text,
+                                  const std::string &unit,
+                                  const Bounds      &bounds);
+
+    /** A count. */
+    std::string &declare(unsigned int      &member,
+                         const std::string &name,
+                         const std::string &default_text,
+                         const Bounds      &bounds = Bounds::none);
+
+    std::string &declare(bool &member, const std::string &name, const std::string &default_text);
+
+    /** A text, one of the choices if there are any. */
+    std::string &declare(std::string       &member,
+                         const std::string &name,
+                         const std::string &default_text,
+                         const Choices     &choices = {},
+                         const std::string &unit    = "");
+
+    /** One of the choices: the enumeration lists its values in the same order. */
+    template <typename Enum, typename = std::enable_if_t<std::is_enum_v<Enum>>>
+    std::string &declare(Enum              &member,
+                         const std::string &name,
+                         const std::string &default_text,
+                         const Choices     &choices)
     {
-      return static_cast<Enum>(choice_index(entry));
+      return bind(
+        {name, EntryType::choice, default_text, "", "", choices, ""},
+        [this, &member](const Entry &entry) { member = static_cast<Enum>(choice_index(entry)); });
     }
-
-    /** The text of a choice, checked. */
-    const std::string &choice_name(const std::string &entry) const;
-
-    /** A number between 0 and 1, both excluded. */
-    double fraction(const std::string &entry) const;
 
     /**
      * Positions of the names of a list among the entry's choices; an empty list or a name twice is
@@ -134,16 +190,27 @@ namespace PeriDeal
      */
     std::vector<unsigned int> choice_indices(const std::string &entry) const;
 
+    /** An entry that is given, but with another physics. */
+    void refuse_unless_elastic(const std::string &entry,
+                               const Physics      physics,
+                               const std::string &remedy = "") const;
+
     /** Throw the UserError "Entry '..' in section '..': <what>". */
     [[noreturn]] void error(const std::string &entry, const std::string &what) const;
 
   private:
-    unsigned int choice_index(const std::string &entry) const;
+    using Reader = std::function<void(const Entry &)>;
+
+    /** The documentation of the entry, whose text @p read turns into a member of this section. */
+    std::string &bind(const Entry &entry, const Reader &read);
+
+    unsigned int choice_index(const Entry &entry) const;
 
     const Entry &find(const std::string &entry) const;
 
-    std::string        section;
-    std::vector<Entry> list;
+    std::string         section;
+    std::vector<Entry>  list;
+    std::vector<Reader> readers; // of each entry
   };
 
 
@@ -152,6 +219,9 @@ namespace PeriDeal
    * number, boolean or choice.
    */
   void check_plain_value(const Entry &entry, const std::string &text, const std::string &where);
+
+  /** "in section 'Domain'", or "outside all sections" without a name. */
+  std::string in_section(const std::string &section);
 
   /** "number", "one of: box, plate with hole": what the manual says on the type of an entry. */
   std::string type_text(const Entry &entry);

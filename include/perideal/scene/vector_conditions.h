@@ -59,17 +59,20 @@ namespace PeriDeal
    *
    * @param may_be_free whether `free` may stand for a formula; not for all of them
    * @param where       entry, section and side for messages. Throws UserError.
+   * @param known       the variables that messages list
    */
   void parse_components(const std::string &text,
                         const unsigned int dim,
                         const bool         may_be_free,
                         const std::string &where,
-                        VectorCondition   &condition);
+                        VectorCondition   &condition,
+                        const std::string &known = "x, y, z, t");
 
   /** One formula of x, y, z, t for each of @p dim components. Throws UserError. */
   std::vector<Expression> parse_vector(const std::string &text,
                                        const unsigned int dim,
-                                       const std::string &where);
+                                       const std::string &where,
+                                       const std::string &known = "x, y, z, t");
 
   /** The two formulas that `if(y < 1, 0, free)` stands for. */
   struct FreeBranch

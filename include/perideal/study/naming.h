@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/scene/scene_variant.h>
+#include <perideal/scene/scene.h>
 
 #include <string>
 #include <utility>
