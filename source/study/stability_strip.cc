@@ -4,7 +4,6 @@
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/kernel_weights.h>
 #include <perideal/output/tables.h>
-#include <perideal/problems/diffusion_bounds.h>
 #include <perideal/problems/diffusion_problem.h>
 
 #include <algorithm>

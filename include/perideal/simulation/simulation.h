@@ -10,7 +10,7 @@
 #include <perideal/mesh/grading.h>
 #include <perideal/mesh/mesh_history.h>
 #include <perideal/output/result_folder.h>
-#include <perideal/problems/model.h>
+#include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
 
 #include <nlohmann/json_fwd.hpp>
