@@ -21,16 +21,6 @@ namespace ScalarWave
   using namespace PeriDeal;
 
   template <int dim>
-  WaveProblem<dim>::WaveProblem(Model<dim> &model, const Scene<dim> &scene)
-    : scene(scene)
-  {
-    with_formulas(model.mesh.get_communicator(),
-                  [&] { field = make_diffusion_problem(model, scene); });
-    this->timings = field->timings;
-  }
-
-
-  template <int dim>
   void WaveProblem<dim>::begin(const RunContext &)
   {
     AssertThrow(op().capacity_is_diagonal(),
@@ -51,7 +41,7 @@ namespace ScalarWave
   template <int dim>
   void WaveProblem<dim>::accelerate(const double t)
   {
-    op().residual(acceleration, field->solution, t);
+    op().residual(acceleration, solution, t);
     for (unsigned int i = 0; i < acceleration.locally_owned_size(); ++i)
       acceleration.local_element(i) /= op().lumped_capacity().local_element(i);
   }
@@ -78,8 +68,8 @@ namespace ScalarWave
         ++n_steps;
         span.now = span.n_done == span.n_steps ? span.end : span.start + span.n_done * dt;
         velocity.add(0.5 * dt, acceleration);
-        field->solution.add(dt, velocity);
-        op().distribute(field->solution, span.now);
+        solution.add(dt, velocity);
+        op().distribute(solution, span.now);
         accelerate(span.now);
         velocity.add(0.5 * dt, acceleration);
         report(static_cast<double>(span.n_done) / span.n_steps);
@@ -96,8 +86,8 @@ namespace ScalarWave
   template <int dim>
   void WaveProblem<dim>::exchange(Archive &archive)
   {
-    const NodeKeys keys = node_keys(dofs());
-    archive.exchange("displacement", field->solution, keys);
+    const NodeKeys keys = node_keys(this->dofs());
+    archive.exchange("displacement", solution, keys);
     archive.exchange("velocity", velocity, keys);
     archive.exchange("acceleration", acceleration, keys);
     archive.exchange("steps", n_steps);
@@ -110,7 +100,7 @@ namespace ScalarWave
   template <int dim>
   double WaveProblem<dim>::work_of(const double span) const
   {
-    return span / longest_step * dofs().n_dofs();
+    return span / longest_step * this->dofs().n_dofs();
   }
 
 
@@ -122,13 +112,13 @@ namespace ScalarWave
       {
         const double c = op().lumped_capacity().local_element(i), v = velocity.local_element(i);
         energies[0] += 0.5 * c * v * v;
-        energies[1] -= 0.5 * c * field->solution.local_element(i) * acceleration.local_element(i);
+        energies[1] -= 0.5 * c * solution.local_element(i) * acceleration.local_element(i);
       }
     for (double &energy : energies)
-      energy = Utilities::MPI::sum(energy, dofs().get_communicator());
-    context.record.add_row(name(), "kinetic energy", energies[0], t);
-    context.record.add_row(name(), "potential energy", energies[1], t);
-    context.record.add_row(name(), "energy", energies[0] + energies[1], t);
+      energy = Utilities::MPI::sum(energy, this->dofs().get_communicator());
+    context.record.add_row(this->name(), "kinetic energy", energies[0], t);
+    context.record.add_row(this->name(), "potential energy", energies[1], t);
+    context.record.add_row(this->name(), "energy", energies[0] + energies[1], t);
   }
 
 
@@ -136,13 +126,6 @@ namespace ScalarWave
   nlohmann::ordered_json WaveProblem<dim>::describe_solving() const
   {
     return {{"stepper", "central differences"}, {"steps", n_steps}, {"time step", longest_step}};
-  }
-
-
-  template <int dim>
-  void WaveProblem<dim>::settle(const RunContext &)
-  {
-    Assert(false, ExcInternalError());
   }
 
 
@@ -162,122 +145,26 @@ namespace ScalarWave
 
 
   template <int dim>
-  std::string WaveProblem<dim>::name() const
+  Trip WaveProblem<dim>::watch(const double t)
   {
-    return field->name();
+    return Problem<dim>::watch(t);
   }
 
 
   template <int dim>
-  std::string WaveProblem<dim>::field_name() const
+  std::vector<std::string> WaveProblem<dim>::notes() const
   {
-    return field->field_name();
-  }
-
-
-  template <int dim>
-  const DoFHandler<dim> &WaveProblem<dim>::dofs() const
-  {
-    return field->dofs();
-  }
-
-
-  template <int dim>
-  const Nodes<dim> *WaveProblem<dim>::nodes() const
-  {
-    return field->nodes();
-  }
-
-
-  template <int dim>
-  Operator &WaveProblem<dim>::op() const
-  {
-    return field->op();
-  }
-
-
-  template <int dim>
-  const Vector &WaveProblem<dim>::state() const
-  {
-    return field->solution;
-  }
-
-
-  template <int dim>
-  unsigned int WaveProblem<dim>::n_components() const
-  {
-    return 1;
-  }
-
-
-  template <int dim>
-  Point<dim> WaveProblem<dim>::position(const unsigned int node) const
-  {
-    return field->position(node);
-  }
-
-
-  template <int dim>
-  double WaveProblem<dim>::volume(const unsigned int node) const
-  {
-    return field->volume(node);
-  }
-
-
-  template <int dim>
-  Difference WaveProblem<dim>::error(const ExactSolution &exact, const double t) const
-  {
-    return field->error(exact, t);
-  }
-
-
-  template <int dim>
-  void WaveProblem<dim>::describe_scene(nlohmann::ordered_json &summary,
-                                        const bool              at_the_end) const
-  {
-    field->describe_scene(summary, at_the_end);
-  }
-
-
-  template <int dim>
-  std::vector<std::string> WaveProblem<dim>::columns() const
-  {
-    return field->columns();
-  }
-
-
-  template <int dim>
-  std::vector<double> WaveProblem<dim>::at_points(
-    const PointEvaluator<dim>              &reader,
-    const std::vector<std::vector<double>> &points) const
-  {
-    return field->at_points(reader, points);
-  }
-
-
-  template <int dim>
-  std::vector<double> WaveProblem<dim>::exact_row(const ExactSolution &exact,
-                                                  const Point<dim>    &point,
-                                                  const double         t) const
-  {
-    return field->exact_row(exact, point, t);
+    return {};
   }
 
 
   template <int dim>
   std::vector<OutputField> WaveProblem<dim>::fields(const double t) const
   {
-    std::vector<OutputField> list = field->fields(t);
+    std::vector<OutputField> list = DiffusionProblem<dim>::fields(t);
     list.push_back({"velocity", {velocity}});
     list.back().components[0].update_ghost_values();
     return list;
-  }
-
-
-  template <int dim>
-  std::vector<std::pair<std::string, std::string>> WaveProblem<dim>::settings() const
-  {
-    return field->settings();
   }
 
 
@@ -313,7 +200,10 @@ namespace ScalarWave
   std::unique_ptr<Problem<dim>> WaveFactory<dim>::make_problem(Model<dim>       &model,
                                                                const Scene<dim> &scene) const
   {
-    return std::make_unique<WaveProblem<dim>>(model, scene);
+    std::unique_ptr<DiffusionField<dim>> field;
+    with_formulas(model.mesh.get_communicator(),
+                  [&] { field = make_diffusion_field(model, scene); });
+    return std::make_unique<WaveProblem<dim>>(std::move(field));
   }
 
 

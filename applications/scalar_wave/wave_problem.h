@@ -9,7 +9,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace ScalarWave
@@ -25,10 +24,10 @@ namespace ScalarWave
    * sin(W dt/2) = w dt/2, to round-off.
    */
   template <int dim>
-  class WaveProblem : public PeriDeal::Problem<dim>
+  class WaveProblem : public PeriDeal::DiffusionProblem<dim>
   {
   public:
-    WaveProblem(PeriDeal::Model<dim> &model, const PeriDeal::Scene<dim> &scene);
+    using PeriDeal::DiffusionProblem<dim>::DiffusionProblem;
 
     // What moves in time.
     void   begin(const PeriDeal::RunContext &context) override;
@@ -39,53 +38,38 @@ namespace ScalarWave
     void   exchange(PeriDeal::Archive &archive) override;
     double work_of(const double span) const override;
 
-    /** Kinetic and potential energy, and their sum. */
-    void add_totals(const double t, const PeriDeal::RunContext &context) override;
-
-    nlohmann::ordered_json describe_solving() const override;
-
-    /** Waves settle at nothing: refused before (WaveFactory). */
-    void settle(const PeriDeal::RunContext &context) override;
-
     /** Not known. */
+    void   take_sample(const PeriDeal::RunContext &context,
+                       PeriDeal::ModelEstimate    &estimate) override;
     double time_of_run(const std::vector<double>  &times,
                        const bool                  says,
                        const PeriDeal::RunContext &context,
                        double                     &memory) override;
-    void   take_sample(const PeriDeal::RunContext &context,
-                       PeriDeal::ModelEstimate    &estimate) override;
 
-    // What is that of the field.
-    std::string                    name() const override;
-    std::string                    field_name() const override;
-    const dealii::DoFHandler<dim> &dofs() const override;
-    const PeriDeal::Nodes<dim>    *nodes() const override;
-    PeriDeal::Operator            &op() const override;
-    const Vector                  &state() const override;
-    unsigned int                   n_components() const override;
-    dealii::Point<dim>             position(const unsigned int node) const override;
-    double                         volume(const unsigned int node) const override;
-    PeriDeal::Difference error(const PeriDeal::ExactSolution &exact, const double t) const override;
-    void describe_scene(nlohmann::ordered_json &summary, const bool at_the_end) const override;
-    std::vector<std::string>           columns() const override;
-    std::vector<double>                at_points(const PeriDeal::PointEvaluator<dim>    &reader,
-                                                 const std::vector<std::vector<double>> &points) const override;
-    std::vector<double>                exact_row(const PeriDeal::ExactSolution &exact,
-                                                 const dealii::Point<dim>      &point,
-                                                 const double                   t) const override;
+    // What is seen of it.
+    PeriDeal::Trip watch(const double t) override;
+
+    /** None of those that are for what diffuses. */
+    std::vector<std::string> notes() const override;
+
+    /** Kinetic and potential energy, and their sum. */
+    void add_totals(const double t, const PeriDeal::RunContext &context) override;
+
+    nlohmann::ordered_json             describe_solving() const override;
     std::vector<PeriDeal::OutputField> fields(const double t) const override;
-    std::vector<std::pair<std::string, std::string>> settings() const override;
 
   private:
+    using PeriDeal::DiffusionProblem<dim>::op;
+    using PeriDeal::DiffusionProblem<dim>::scene;
+    using PeriDeal::DiffusionProblem<dim>::solution;
+
     /** The acceleration of u at time t. */
     void accelerate(const double t);
 
-    const PeriDeal::Scene<dim>                      &scene;
-    std::unique_ptr<PeriDeal::DiffusionProblem<dim>> field; // has u
-    Vector                                           velocity, acceleration;
-    PeriDeal::StepSpan                               span;
-    double                                           longest_step = 0.;
-    unsigned long long                               n_steps      = 0;
+    Vector             velocity, acceleration;
+    PeriDeal::StepSpan span;
+    double             longest_step = 0.;
+    unsigned long long n_steps      = 0;
   };
 
 

@@ -4,7 +4,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/analysis/bond_intensities.h>
+#include <perideal/base/instantiate.h>
+#include <perideal/laws/elasticity.h>
 #include <perideal/laws/entropy_of_deformation.h>
+#include <perideal/laws/lattice_family.h>
 #include <perideal/operators/solid/state_operator.h>
 #include <perideal/operators/solid/surface_stiffness.h>
 #include <perideal/scene/beyond_sides.h>
@@ -14,9 +17,7 @@
 #include <cmath>
 #include <limits>
 
-#include "diffusion_parts.h"
-#include "solid_fields.h"
-#include "solid_scene_notes.h"
+#include "solid_parts.h"
 
 namespace PeriDeal
 {
@@ -24,20 +25,223 @@ namespace PeriDeal
 
   namespace
   {
+    /** The stiffness of a lattice whose families have few bonds, or oblong cells. */
     template <int dim>
-    class BondSolid : public SolidProblem<dim>
+    std::string note_on_few_bonds(const Scene<dim>                     &scene,
+                                  const std::vector<FamilyMember<dim>> &family)
+    {
+      constexpr double tolerable = 0.02, tolerable_shear = 0.05;
+      if (dim == 1 || family.empty() || !scene.material.uniform_moduli())
+        return {};
+      const Tensor<1, dim> h = scene.domain.spacing();
+      const Moduli         moduli =
+        scene.material.moduli(scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower));
+      const StateLaw law = scene.elasticity.is_bond_based() ?
+                             bond_law(moduli, dim, scene.elasticity.plane) :
+                             state_law(moduli, dim, scene.elasticity.plane);
+      // Means of n_a^2 n_b^2 over bonds in all directions, and over the family.
+      double         all = 0.;
+      Tensor<2, dim> even, found;
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = 0; b < dim; ++b)
+          even[a][b] = (a == b ? 3. : 1.) / (dim * (dim + 2.));
+      for (const FamilyMember<dim> &member : family)
+        {
+          Tensor<1, dim> squares; // of the direction, times the length
+          for (unsigned int d = 0; d < dim; ++d)
+            squares[d] = std::pow(member.offset[d] * h[d], 2) / member.r;
+          found += member.weight * outer_product(squares, squares);
+          all += member.weight * member.r * member.r;
+        }
+      found /= all;
+      const auto compliance = [&](const Tensor<2, dim> &means) {
+        Tensor<2, dim> stiffness = law.extension * means;
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = 0; b < dim; ++b)
+            stiffness[a][b] += law.volumetric / dim;
+        return invert(stiffness);
+      };
+      const Tensor<2, dim> of_family = compliance(found), of_body = compliance(even);
+      double               g = 1., young = 1.;
+      unsigned int         first = 0, second = 1, axis = 0;
+      for (unsigned int a = 0; a < dim; ++a)
+        {
+          if (const double E = of_body[a][a] / of_family[a][a];
+              std::abs(E - 1.) > std::abs(young - 1.) + 1e-9)
+            {
+              young = E;
+              axis  = a;
+            }
+          for (unsigned int b = a + 1; b < dim; ++b)
+            if (const double G = found[a][b] / even[a][b];
+                std::abs(G - 1.) > std::abs(g - 1.) + 1e-9)
+              {
+                g      = G;
+                first  = a;
+                second = b;
+              }
+        }
+      if (std::abs(g - 1.) < tolerable_shear && std::abs(young - 1.) < tolerable)
+        return {};
+      const double shortest = *std::min_element(h.begin_raw(), h.end_raw()),
+                   longest  = *std::max_element(h.begin_raw(), h.end_raw());
+      const bool oblong     = longest > (1. + 1e-6) * shortest;
+      return "families of m = " + rounded_text(scene.horizon() / shortest) +
+             (oblong ? ", but " + rounded_text(scene.horizon() / longest) +
+                         " along the long edges of cells," :
+                       "") +
+             " with this kernel have a shear modulus of " + rounded_text(g) +
+             " times that of 'Material' in the plane of " + "xyz"[first] + " and " + "xyz"[second] +
+             ", and a body pulled along " + "xyz"[axis] + " is " + rounded_text(young) +
+             " times as stiff as it should be. " +
+             (oblong ? "Cells as long as wide ('Cells' in section 'Domain'), or" :
+                       "'Kernel exponent = 0' in section 'Peridynamics' and") +
+             " a larger 'Horizon ratio' bring both near 1.";
+    }
+
+
+    /**
+     * By how much families that go on beyond the sides of a thin body make it too stiff where it is
+     * bent, or twisted: for `Models = peridynamics`.
+     */
+    template <int dim>
+    std::string note_on_bending(const Scene<dim> &scene)
+    {
+      constexpr double tolerable = 0.05, slender = 3.;
+      if (dim == 1 || !scene.domain.has_lattice())
+        return {};
+      const auto           beyond = beyond_sides(scene);
+      const Tensor<1, dim> h = scene.domain.spacing(), size = whole_extent(scene);
+      const double         longest = *std::max_element(size.begin_raw(), size.end_raw());
+      double               bent = 0., twisted = 0.;
+      unsigned int         thin = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          // Of sides of which one is loaded as where both are in part; with the mirror image.
+          const auto has = [&](const BeyondSide what) {
+            return beyond[2 * d] == what || beyond[2 * d + 1] == what;
+          };
+          const bool whole = !has(BeyondSide::in_part);
+          if (has(BeyondSide::nothing) || (whole && !has(BeyondSide::continued)) ||
+              longest < slender * size[d])
+            continue;
+          // Measured (doc/elasticity.md).
+          const double m = scene.horizon() / h[d], n = size[d] / h[d],
+                       more = (dim == 2 ? 1. : 1.25) * (2.45 + 0.25 * m * m) / (n * n),
+                       less = (dim == 2 ? 1. : 0.7) * std::pow((0.4 + 0.475 * m) / n, m);
+          if ((whole ? more : less) > bent || (dim == 3 && more > twisted))
+            thin = d;
+          bent    = std::max(bent, whole ? more : less);
+          twisted = std::max(twisted, dim == 3 ? more : 0.);
+        }
+      if (std::max(bent, twisted) < tolerable)
+        return {};
+      const std::string in_bending =
+        bent < tolerable ? "" :
+                           rounded_text(1. + bent) + " times as stiff as it should be in bending";
+      const std::string in_torsion =
+        twisted < tolerable ? "" :
+                              rounded_text(1. + twisted) +
+                                (in_bending.empty() ? " times as stiff as it should be in torsion" :
+                                                      " times in torsion");
+      return "with m = " + rounded_text(scene.horizon() / h[thin]) + " and " +
+             std::to_string(scene.domain.cells[thin]) + " cells along " + "xyz"[thin] +
+             " this body is about " + in_bending +
+             (in_bending.empty() || in_torsion.empty() ? "" : " and ") + in_torsion +
+             " (not where it is pulled). Twice as many cells there make that a quarter or less, 'Models = finite elements' has none of it.";
+    }
+
+
+    /**
+     * The same of a mesh from a file, as measured (doc/elasticity.md).
+     * @param n_cells what of it is thinnest, in cells of mean size
+     * @param m       of these
+     * @param ends    families end at free sides, since bonds may break or in motion
+     */
+    std::string note_on_thin_parts(const double n_cells, const double m, const bool ends)
+    {
+      constexpr double tolerable = 0.05;
+      const double     more      = ends ? 0.3 * std::pow(2. / n_cells, 8.) :
+                                          0.045 * std::pow(m / 3., 1.4) * std::pow(4. / n_cells, 3.8),
+                   less          = ends ? std::min(0.15, 0.24 * (m - 2.4) / n_cells) :
+                                          0.5 * (m / 3. - 1.) / n_cells;
+      if (more < tolerable && less < tolerable)
+        return {};
+      const std::string size = n_cells < 2. || more > 1. ?
+                                 "much too stiff" :
+                                 "about " + rounded_text(more < tolerable ? 1. - less : 1. + more) +
+                                   " times as stiff as they should be";
+      return "behind free sides this mesh is " + rounded_text(n_cells) +
+             " cells of mean size thick where it is thinnest. With m = " + rounded_text(m) +
+             " strips of that thickness with two free long sides are " + size +
+             " in bending (not where they are pulled). Smaller cells, with a smaller 'Horizon' in section 'Peridynamics', make that less; 'Models = finite elements' has none of it.";
+    }
+
+
+    /** Cracks that are held back between two rows of nodes. */
+    template <int dim>
+    std::string note_on_trapping(const Scene<dim>                     &scene,
+                                 const std::vector<FamilyMember<dim>> &family)
+    {
+      constexpr double few = 3.5;
+      if (dim == 1 || family.empty() || !scene.material.fracture_energy)
+        return {};
+      const Tensor<1, dim> h = scene.domain.spacing();
+      const double         m = scene.horizon() / *std::min_element(h.begin_raw(), h.end_raw());
+      if (m >= few)
+        return {};
+      int    n_bonds   = 0;
+      double strongest = 0., all = 0.;
+      for (const FamilyMember<dim> &member : family)
+        if (member.offset[0] > 0)
+          {
+            const double energy = member.offset[0] * member.weight * member.r * member.r;
+            n_bonds += member.offset[0];
+            all += energy;
+            strongest = std::max(strongest, energy / member.offset[0]);
+          }
+      return "with m = " + rounded_text(m) +
+             " a crack along the rows gets on a column at a time, by " + std::to_string(n_bonds) +
+             " bonds that hold it back until the last breaks (one of them has " +
+             rounded_text(100. * strongest / all) +
+             " % of the energy): loads at which it runs come out 10 to 20 % too large however fine the lattice is. "
+             "'Horizon ratio' of 4 or 5 (section 'Peridynamics') takes that away.";
+    }
+
+
+    /**
+     * A critical stretch where a fracture energy is meant.
+     * @param energy  per area of new crack, of the bonds that cross a plane of the lattice
+     * @param of_ball the same of the integral over a ball
+     */
+    template <int dim>
+    std::string note_on_stretch(const Scene<dim> &scene, const double energy, const double of_ball)
+    {
+      constexpr double tolerable = 0.05;
+      if (std::abs(energy / of_ball - 1.) < tolerable)
+        return {};
+      const Tensor<1, dim> h = scene.domain.spacing();
+      return "'Critical stretch' in section 'Material' is a fracture energy of " +
+             rounded_text(energy) + " on this lattice of m = " +
+             rounded_text(scene.horizon() / *std::min_element(h.begin_raw(), h.end_raw())) + ", " +
+             rounded_text(energy / of_ball) +
+             " times that of a ball, from which textbooks have their formulas. 'Fracture energy' in its place is the same on every lattice.";
+    }
+
+
+    template <int dim>
+    class BondSolid : public SolidField<dim>
     {
     public:
-      using SolidProblem<dim>::scene;
+      using Field<dim>::scene;
+      using Field<dim>::handler;
+      using Field<dim>::node_set;
+      using Field<dim>::solution;
 
-      BondSolid(Model<dim> &model, const Scene<dim> &scene)
-        : SolidProblem<dim>(scene)
-        , handler(model.dofs())
+      BondSolid(Model<dim> &on, const Scene<dim> &scene)
+        : SolidField<dim>(on, scene)
       {
-        {
-          Timings::Scope scope(this->timings, "unknowns");
-          node_set = &make_bond_nodes(model, scene);
-        }
+        this->make_bond_nodes();
         Timings::Scope scope(this->timings, "operator");
         states                       = std::make_unique<StateOperator<dim>>(*node_set, scene);
         const SolidBonds<dim> &bonds = states->bonds();
@@ -54,22 +258,7 @@ namespace PeriDeal
           }
       }
 
-      std::string name() const override
-      {
-        return scene.general.name_of(ModelKind::peridynamics);
-      }
-
-      const DoFHandler<dim> &dofs() const override
-      {
-        return handler;
-      }
-
-      const Nodes<dim> *nodes() const override
-      {
-        return node_set;
-      }
-
-      ElasticOperator &op() const override
+      StateOperator<dim> &op() const override
       {
         return *states;
       }
@@ -100,24 +289,14 @@ namespace PeriDeal
         return states->breaking().damage();
       }
 
-      Point<dim> position(const unsigned int node) const override
-      {
-        return node_set->position(node);
-      }
-
-      double volume(const unsigned int node) const override
-      {
-        return node_set->volume(node);
-      }
-
       std::vector<double> at_points(const PointEvaluator<dim>              &reader,
                                     const std::vector<std::vector<double>> &points) const override
       {
         constexpr unsigned int n_stresses = SymmetricTensor<2, 3>::n_independent_components;
-        const auto             stress     = nodal_stress(states->tensors(this->displacement));
+        const auto             stress     = nodal_stress(states->tensors(solution));
         std::vector<std::vector<double>> columns;
         for (unsigned int d = 0; d < dim; ++d)
-          columns.push_back(reader.evaluate(this->displacement, dim, d));
+          columns.push_back(reader.evaluate(solution, dim, d));
         // Von Mises' stress of interpolated components would be smaller than that of the nodes: it
         // is interpolated itself.
         for (unsigned int k = 0; k <= n_stresses; ++k)
@@ -149,13 +328,13 @@ namespace PeriDeal
         return rows;
       }
 
-      std::vector<OutputField> fields(const double) const override
+      std::vector<OutputField> fields() const override
       {
-        const NodalTensors<dim>   tensors = states->tensors(this->displacement);
-        const std::vector<double> theta   = nodal_dilatations(states->bonds(), this->displacement);
-        SolidFields<dim>          list(node_set->partitioner());
-        list.add_vector("displacement", this->displacement);
-        if (this->stepper)
+        const NodalTensors<dim>   tensors = states->tensors(solution);
+        const std::vector<double> theta   = nodal_dilatations(states->bonds(), solution);
+        NodalFields<dim>          list(node_set->partitioner());
+        list.add_vector("displacement", solution);
+        if (this->velocity.size() > 0)
           list.add_vector("velocity", this->velocity);
         list.add_stress(nodal_stress(tensors));
         list.add_strain(tensors.strain);
@@ -176,7 +355,7 @@ namespace PeriDeal
 
       SymmetricTensor<2, 3> mean_stress() const override
       {
-        const auto            stress = nodal_stress(states->tensors(this->displacement));
+        const auto            stress = nodal_stress(states->tensors(solution));
         SymmetricTensor<2, 3> sum;
         double                volume = 0.;
         for (unsigned int i = 0; i < stress.size(); ++i)
@@ -191,10 +370,10 @@ namespace PeriDeal
       std::vector<double> entropies_of_deformation(const Vector &change) const override
       {
         // Of the displacement alone: the dilatations have thermal extensions taken off.
-        Vector at_rest(this->displacement);
+        Vector at_rest(solution);
         at_rest                           = 0.;
         const std::vector<double> taken   = nodal_dilatations(states->bonds(), at_rest);
-        std::vector<double>       entropy = nodal_dilatations(states->bonds(), this->displacement);
+        std::vector<double>       entropy = nodal_dilatations(states->bonds(), solution);
         for (unsigned int i = 0; i < entropy.size(); ++i)
           {
             const Point<dim> &p = node_set->position(i);
@@ -215,24 +394,24 @@ namespace PeriDeal
         if constexpr (dim > 1)
           {
             const ThermalStrains &thermal = states->bonds().thermal;
-            this->displacement.update_ghost_values();
+            solution.update_ghost_values();
             list = bond_intensities<dim>(
               scene,
               states->bonds().families,
               [&](const unsigned int i, const unsigned int k) {
-                return k < dim ? this->displacement.local_element(dim * i + k) : thermal[i];
+                return k < dim ? solution.local_element(dim * i + k) : thermal[i];
               },
               thermal.any(),
               time,
               states->crack_time());
-            this->displacement.set_ghost_state(false);
+            solution.set_ghost_state(false);
           }
         return list;
       }
 
       std::vector<StressSample> stress_samples() const override
       {
-        const auto                stress = nodal_stress(states->tensors(this->displacement));
+        const auto                stress = nodal_stress(states->tensors(solution));
         std::vector<StressSample> samples;
         for (unsigned int i = 0; i < stress.size(); ++i)
           if (const double volume = volume_in_body(i); volume > 0.)
@@ -241,9 +420,9 @@ namespace PeriDeal
         return samples;
       }
 
-      std::vector<std::pair<std::string, std::string>> settings() const override
+      ChosenSettings settings() const override
       {
-        auto list = bond_settings(scene, states->bonds().families);
+        auto list = this->bond_settings(states->bonds().families);
         if (!states->brittle())
           return list;
         double lowest = 1e300, highest = 0.;
@@ -372,8 +551,6 @@ namespace PeriDeal
                " than its Young's modulus (mean over its nodes); the speed of waves changes by half of that.";
       }
 
-      const DoFHandler<dim>              &handler;
-      Nodes<dim>                         *node_set = nullptr; // of the model
       std::unique_ptr<StateOperator<dim>> states;
       Tensor<1, dim>                      stiffer;      // by families that end, along the axes
       double                              spacing = 0.; // of a mesh with thin parts
@@ -382,15 +559,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_bond_solid(Model<dim> &model, const Scene<dim> &scene)
+  std::unique_ptr<SolidField<dim>> make_bond_solid(Model<dim> &model, const Scene<dim> &scene)
   {
     return std::make_unique<BondSolid<dim>>(model, scene);
   }
 
-#define PERIDEAL_INSTANTIATE(dim) \
-  template std::unique_ptr<SolidProblem<dim>> make_bond_solid(Model<dim> &, const Scene<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(make_bond_solid);
 } // namespace PeriDeal

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include "crack_growth.h"
-
+#include <perideal/base/instantiate.h>
 #include <perideal/problems/solid_problem.h>
 
 #include <algorithm>
+
+#include "solid_parts.h"
 
 namespace PeriDeal
 {
@@ -76,14 +77,14 @@ namespace PeriDeal
   void CrackGrowth<dim>::look_at(const SolidProblem<dim> &solid)
   {
     const unsigned long long n = solid.op().n_broken_bonds();
-    if (n == 0 || solid.families() == nullptr ||
+    if (n == 0 || solid.body.families() == nullptr ||
         (n == n_broken && !solid.op().has_growing_cracks()))
       return;
     if (!surface)
-      surface = std::make_unique<CrackSurface<dim>>(*solid.families());
+      surface = std::make_unique<CrackSurface<dim>>(*solid.body.families());
     n_broken                            = n;
-    const std::vector<BondBreak> breaks = solid.breaks();
-    const std::vector<double>    damage = solid.damage();
+    const std::vector<BondBreak> breaks = solid.body.breaks();
+    const std::vector<double>    damage = solid.body.damage();
     area                                = surface->area(breaks);
     damaged_volume                      = surface->damaged_volume(breaks, damage, damaged);
     facets                              = surface->facets(breaks, damage);
@@ -115,7 +116,7 @@ namespace PeriDeal
                                   const RunContext        &context,
                                   nlohmann::ordered_json  &summary) const
   {
-    const double reach    = slack * solid.families()->weights().horizon();
+    const double reach    = slack * solid.body.families()->weights().horizon();
     const auto   fronts   = fronts_at(solid, t, reach);
     const auto   advances = find_advances(facets, fronts, reach, t);
     unsigned int n_tips   = 0;
@@ -173,7 +174,5 @@ namespace PeriDeal
   }
 
 
-  template class CrackGrowth<1>;
-  template class CrackGrowth<2>;
-  template class CrackGrowth<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CrackGrowth);
 } // namespace PeriDeal

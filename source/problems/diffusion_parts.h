@@ -7,10 +7,7 @@
 #include <perideal/problems/diffusion_problem.h>
 
 #include <memory>
-#include <sstream>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace PeriDeal
 {
@@ -19,31 +16,13 @@ namespace PeriDeal
    * zone everywhere.
    */
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(Model<dim>       &model,
-                                                                const Scene<dim> &scene);
+  std::unique_ptr<DiffusionField<dim>> make_element_diffusion(Model<dim>       &model,
+                                                              const Scene<dim> &scene);
 
   /** Peridynamics by bonds alone. */
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_bond_diffusion(Model<dim>       &model,
-                                                             const Scene<dim> &scene);
-
-  /** The nodes of peridynamics by bonds alone, of diffusion and of solids. Collective. */
-  template <int dim>
-  Nodes<dim> &make_bond_nodes(Model<dim> &model, const Scene<dim> &scene);
-
-
-  /** What was chosen for the bonds, for the report. */
-  template <int dim>
-  std::vector<std::pair<std::string, std::string>> bond_settings(const Scene<dim>    &scene,
-                                                                 const Families<dim> &families);
-
-
-  inline std::string to_text(const double x)
-  {
-    std::ostringstream out;
-    out << x;
-    return out.str();
-  }
+  std::unique_ptr<DiffusionField<dim>> make_bond_diffusion(Model<dim>       &model,
+                                                           const Scene<dim> &scene);
 
 
   template <int dim>

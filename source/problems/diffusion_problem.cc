@@ -1,23 +1,28 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/analysis/exact_solution.h>
+#include <perideal/base/instantiate.h>
+#include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/node_keys.h>
+#include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/scene/expression.h>
+#include <perideal/scene/lists.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <sstream>
+#include <vector>
 
-#include "diffusion_guards.h"
-#include "diffusion_notes.h"
 #include "diffusion_parts.h"
-#include "diffusion_summary.h"
-#include "diffusion_totals.h"
-#include "step_forecast.h"
-#include "steps_with_formulas.h"
+#include "problem_parts.h"
 
 namespace PeriDeal
 {
@@ -25,6 +30,149 @@ namespace PeriDeal
 
   namespace
   {
+    struct StepForecast
+    {
+      double n_steps, applications; // of the operator
+      double time;                  // of processors, in seconds
+    };
+
+
+    /** Has been seen, thrown out of the steps. */
+    struct Enough
+    {};
+
+
+    /** How often a step applies the operator, relatively: more often the longer it is. */
+    double stages(const double dt, const double largest, const bool stabilized)
+    {
+      constexpr double least = 2.;
+      return stabilized ? std::max(least, std::sqrt(1. + 1.54 * dt * largest)) : 1.;
+    }
+
+
+    /** After a step: where it ends, and what the run has taken until then. */
+    struct Tried
+    {
+      double t, applications, spent;
+    };
+
+
+    /**
+     * What a run takes, from the steps that were tried. They grow as the later half of those, dt ~
+     * t^p; where these ended before what comes in at a side had passed two cells, they stay until
+     * then and go as t from there on. Each costs as those of the last quarter.
+     * @param largest eigenvalue
+     */
+    StepForecast steps_to(const double              end,
+                          const std::vector<Tried> &tried,
+                          const double              largest,
+                          const bool                stabilized)
+    {
+      constexpr unsigned int n_spans = 400;
+      const std::size_t      last = tried.size() - 1, half = last / 2;
+      const std::size_t      width = std::max<std::size_t>(1, last / 4);
+      const auto begin_of          = [&](const std::size_t k) { return k > width ? k - width : 0; };
+      // Mean steps of the last quarter, and of the one before the middle.
+      const auto step = [&](const std::size_t k) {
+        const std::size_t first = begin_of(k);
+        return k > first ? (tried[k].t - tried[first].t) / static_cast<double>(k - first) :
+                           tried[k].t;
+      };
+      const double layer = largest > 0. ? 11. / largest : 0.; // time until it has passed two cells
+      const double t = tried[last].t, dt = step(last), from = std::max(t, layer);
+      // What has come in at a side changes at the rate 1/t, once it has passed two cells.
+      const double p =
+        t < 3. * layer ?
+          1. :
+        tried.size() < 4 ?
+          0. :
+          std::clamp(std::log(dt / step(half)) / std::log(t / tried[half].t), 0., 1.);
+      const double first = stages(dt, largest, stabilized), ratio = std::pow(end / t, 1. / n_spans);
+      double       n = 0., cost = 0., s = t; // of the rest
+      for (unsigned int k = 0; k < n_spans; ++k, s *= ratio)
+        {
+          const double of_span = dt * std::pow(std::max(s * std::sqrt(ratio), layer) / from, p),
+                       count   = s * (ratio - 1.) / of_span;
+          n += count;
+          cost += count * stages(of_span, largest, stabilized) / first;
+        }
+      const Tried &now = tried[last], &before = tried[begin_of(last)];
+      const double quarter = last > begin_of(last) ? static_cast<double>(last - begin_of(last)) :
+                                                     1.;
+      const auto   all     = [&](double Tried::*const what) {
+        const double of_quarter = now.*what - (last > begin_of(last) ? before.*what : 0.);
+        return now.*what + cost * of_quarter / quarter;
+      };
+      return {static_cast<double>(tried.size()) + n, all(&Tried::applications), all(&Tried::spent)};
+    }
+
+    /**
+     * How many steps a run takes and how long they take, from its first ones: where steps adapt to
+     * a solution that nobody knows yet, and the material has to be found anew in each. The run goes
+     * from 0 towards its end until twice the time forecasts nearly the same, for half a second of
+     * processor time at least and some eight at most.
+     * @param advance to the end, calling what it is given after each step but the last
+     * @param op of the steps
+     * @param stabilized explicit steps whose stages go with the length (rkc2)
+     * Collective.
+     */
+    StepForecast forecast_steps(
+      const double                                                            end,
+      const std::function<void(const std::function<void(const double t)> &)> &advance,
+      const Operator                                                         &op,
+      const bool                                                              stabilized,
+      const MPI_Comm                                                          communicator)
+    {
+      constexpr double      enough = 0.5, most = 8.; // seconds
+      constexpr double      settled = 1.2;           // from one forecast to that of twice the time
+      constexpr std::size_t least   = 8;             // steps, unless they take ten times as long
+      const double          start   = processor_seconds();
+      const auto            passed  = [&] {
+        return dealii::Utilities::MPI::max(processor_seconds() - start, communicator);
+      };
+      const unsigned long long before = op.n_applications();
+      const auto         n_of = [&] { return static_cast<double>(op.n_applications() - before); };
+      std::vector<Tried> tried;
+      StepForecast       forecast{};
+      double             next = enough;
+      try
+        {
+          advance([&](const double t) {
+            if (t <= (tried.empty() ? 0. : tried.back().t)) // a step that was rejected
+              return;
+            tried.push_back({t, n_of(), passed()});
+            const double spent = tried.back().spent;
+            if (spent < next || (tried.size() < least && spent < 10. * enough))
+              return;
+            const StepForecast last = forecast;
+            forecast                = steps_to(end, tried, op.spectrum().sharp, stabilized);
+            const double ratio =
+              last.applications > 0. ? forecast.applications / last.applications : 0.;
+            if ((ratio < settled && ratio > 1. / settled) || spent >= most)
+              throw Enough();
+            next = std::min(2. * spent, most);
+          });
+          forecast = {static_cast<double>(tried.size() + 1), n_of(), passed()};
+        }
+      catch (const Enough &)
+        {}
+      return forecast;
+    }
+
+
+    /** Bounds of the spectrum, and what explicit steps are stable with them. */
+    std::string describe_stable_steps(const Spectrum &spectrum)
+    {
+      std::ostringstream out;
+      out << "  largest eigenvalue: sharp bound " << spectrum.sharp << ", safe bound "
+          << spectrum.safe << "\n  stable steps (sharp / safe): ";
+      for (const std::string name : {"euler", "rk4"})
+        out << (name == "rk4" ? ", " : "") << name << " " << stable_step(name, spectrum.sharp)
+            << " / " << stable_step(name, spectrum.safe);
+      return out.str();
+    }
+
+
     /**
      * Refuse what a stepper would never finish. @p stiffness is the end time times the largest
      * eigenvalue.
@@ -45,77 +193,94 @@ namespace PeriDeal
                 << " or more. 'chebyshev' and a fixed 'Time step' reach more.";
       AssertThrow(message.str().empty(), UserError(message.str()));
     }
+
+
+    /** Fixed steps that do not damp what they do not resolve; empty: there is nothing to say. */
+    std::string note_on_fast_waves(const Stepper &stepper, const double end_time)
+    {
+      constexpr double tolerable = 0.02;
+      const double     left      = stepper.left_of_fast_waves();
+      if (!(left > 0.))
+        return {};
+      const double n = std::max(1., std::round(end_time / stepper.current_step()));
+      if (std::pow(left, n) < tolerable)
+        return {};
+      return "a step of '" + stepper.name() + "' leaves up to " + rounded_text(left) +
+             " of waves that it does not resolve, the " + rounded_text(n) + " steps of this run " +
+             rounded_text(std::pow(left, n)) +
+             ": what jumps, at the start or at a side, stays and rings. 'Time step = auto' in section 'Time' begins with steps that damp it, and 'Stepper = sdirk2' damps it in steps of any size.";
+    }
+
+
+    /** Fixed steps that were divided, and into how many parts; or empty. */
+    std::string note_on_divided_steps(const Stepper &stepper)
+    {
+      const StepperCost &cost = stepper.cost();
+      if (cost.divided == 0)
+        return {};
+      return (cost.divided == 1 ?
+                "one 'Time step' was divided, into " :
+                std::to_string(cost.divided) +
+                  " steps of 'Time step' (section 'Time') were divided, into up to ") +
+             std::to_string(cost.most_parts) +
+             " parts, since the iterations for the material's dependence on the temperature did not converge in longer ones.";
+    }
+
+
+    /** Of given values, where nothing enters but through them and they are constant numbers. */
+    template <int dim>
+    std::optional<Extent> range_of_given(const Scene<dim> &scene, const Operator &op)
+    {
+      const Expression &source    = scene.initial_and_source.source;
+      const auto       &transfers = scene.boundary_conditions.transfers;
+      const auto       &given     = scene.boundary_conditions.dirichlet;
+      if (given.empty() || !source.is_constant() || source.value(Point<dim>()) != 0. ||
+          op.depends_on_time() ||
+          !std::all_of(transfers.begin(), transfers.end(), [](const SurfaceTransfer &transfer) {
+            return transfer.insulates();
+          }))
+        return {};
+      Extent range{std::numeric_limits<double>::max(), -std::numeric_limits<double>::max(), true};
+      for (const SideCondition &condition : given)
+        {
+          if (!condition.value.is_constant())
+            return {};
+          const double value = condition.value.value(Point<dim>());
+          range.least        = std::min(range.least, value);
+          range.most         = std::max(range.most, value);
+        }
+      return range;
+    }
+
+
+    /** Give the solution the initial value of the scene, with the prescribed values of time 0. */
+    template <int dim>
+    void set_start(DiffusionField<dim> &field)
+    {
+      field.op().initialize_vector(field.solution);
+      field.set_initial_value(field.solution);
+      field.op().distribute(field.solution, 0.);
+      field.op().take_material_at(field.solution); // with the prescribed values
+      field.op().distribute(field.solution, 0.);
+    }
   } // namespace
 
 
   template <int dim>
-  void set_start(DiffusionProblem<dim> &run)
-  {
-    run.op().initialize_vector(run.solution);
-    run.set_initial_value(run.solution);
-    run.op().distribute(run.solution, 0.);
-    run.op().take_material_at(run.solution); // with the prescribed values
-    run.op().distribute(run.solution, 0.);
-  }
-
-
-  template <int dim>
-  std::vector<std::string> DiffusionProblem<dim>::columns() const
-  {
-    return {"value"};
-  }
-
-
-  template <int dim>
-  std::vector<double> DiffusionProblem<dim>::at_points(
-    const PointEvaluator<dim> &reader,
-    const std::vector<std::vector<double>> &) const
-  {
-    solution.update_ghost_values();
-    std::vector<double> values = reader.evaluate(solution);
-    solution.set_ghost_state(false);
-    return values;
-  }
-
-
-  template <int dim>
-  std::vector<OutputField> DiffusionProblem<dim>::fields(const double t) const
-  {
-    std::vector<OutputField> list{{this->field_name(), {solution}}};
-    list[0].components[0].update_ghost_values();
-    solution.update_ghost_values();
-    with_formulas(this->dofs().get_communicator(), [&] {
-      for (OutputField &field : derived_fields(solution, t))
-        list.push_back(std::move(field));
-    });
-    solution.set_ghost_state(false);
-    return list;
-  }
-
-
-  template <int dim>
-  DiffusionProblem<dim>::DiffusionProblem(const Scene<dim> &scene)
-    : scene(scene)
-    , guards(std::make_unique<DiffusionGuards<dim>>(*this))
+  DiffusionProblem<dim>::DiffusionProblem(std::unique_ptr<DiffusionField<dim>> of)
+    : Problem<dim>(std::move(of))
+    , solution(this->field->solution)
+    , body(static_cast<DiffusionField<dim> &>(*this->field))
   {}
-
-
-  template <int dim>
-  DiffusionProblem<dim>::~DiffusionProblem() = default;
 
 
   template <int dim>
   void DiffusionProblem<dim>::make_stepper()
   {
-    StepperOptions options;
-    options.time_step        = scene.time.time_step;
-    options.tolerance        = scene.time.tolerance;
-    options.solver_tolerance = scene.solver.tolerance;
-    options.max_iterations   = scene.solver.max_iterations;
-    options.direct_up_to     = scene.solver.direct_up_to;
     Timings::Scope scope(this->timings, "stepper");
-    with_formulas(this->dofs().get_communicator(),
-                  [&] { stepper = PeriDeal::make_stepper(scene.time.stepper, op(), options); });
+    with_formulas(this->dofs().get_communicator(), [&] {
+      stepper = PeriDeal::make_stepper(scene.time.stepper, op(), this->stepper_options());
+    });
     check_stepper(stepper->name(), scene.time, op().spectrum().sharp * scene.time.end_time);
     if (scene.guards.goes_on())
       stepper->findings().let_wait();
@@ -150,7 +315,7 @@ namespace PeriDeal
   {
     Timings::Scope scope(this->timings, "following damage");
     with_formulas(this->dofs().get_communicator(), [&] {
-      follow(damage);
+      op().follow(damage);
       stepper->restart();
     });
   }
@@ -201,9 +366,39 @@ namespace PeriDeal
 
 
   template <int dim>
+  RecoveryIndicators DiffusionProblem<dim>::indicators() const
+  {
+    return body.indicators();
+  }
+
+
+  template <int dim>
   void DiffusionProblem<dim>::start_anew()
   {
-    set_start(*this);
+    set_start(body);
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::before_remesh()
+  {
+    body.before_remesh();
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::rebuild(const double t)
+  {
+    body.rebuild(t);
+    time_of_start = t;
+  }
+
+
+  template <int dim>
+  void DiffusionProblem<dim>::after_remesh(const double t, const bool steady)
+  {
+    rebuild(t);
+    ledger.add(body.move_solution(t, steady));
   }
 
 
@@ -211,32 +406,9 @@ namespace PeriDeal
   std::vector<std::string> DiffusionProblem<dim>::notes() const
   {
     std::vector<std::string> list;
-    for (const std::string &note : own_notes())
+    for (const std::string &note : body.notes())
       list.push_back(this->name() + ": " + note);
     return list;
-  }
-
-
-  template <int dim>
-  Difference DiffusionProblem<dim>::error(const ExactSolution &exact, const double t) const
-  {
-    solution.update_ghost_values();
-    const Difference result =
-      difference_to(solution, [&](const Point<dim> &p) { return exact_row(exact, p, t)[0]; });
-    solution.set_ghost_state(false);
-    return result;
-  }
-
-
-  template <int dim>
-  std::vector<double> DiffusionProblem<dim>::exact_row(const ExactSolution &exact,
-                                                       const Point<dim>    &point,
-                                                       const double         t) const
-  {
-    double x[dim];
-    for (unsigned int d = 0; d < dim; ++d)
-      x[d] = point[d];
-    return {exact.value(x, t)};
   }
 
 
@@ -325,7 +497,7 @@ namespace PeriDeal
               if (scene.cracks.change())
                 {
                   Timings::Scope scope(this->timings, "changing cracks");
-                  if (update(reached))
+                  if (op().update(reached))
                     stepper->restart();
                 }
               Timings::Scope scope(this->timings, "time stepping");
@@ -352,33 +524,16 @@ namespace PeriDeal
     this->timings.exchange(archive);
     if (stepper)
       stepper->exchange(archive, keys);
-    if (archive.loads())
-      repeat_changes();
-    op().exchange(archive, keys);
-  }
-
-
-  template <int dim>
-  void DiffusionProblem<dim>::repeat_changes()
-  {
     // One after the other, as they have been made: sums of changes keep their digits.
-    if (scene.cracks.change() && stepper)
+    if (archive.loads() && scene.cracks.change() && stepper)
       with_formulas(this->dofs().get_communicator(), [&] {
         for (double t = time_of_start; t < reached || (t == reached && stepper->is_inside_span());
              t        = op().next_event(t))
-          update(t);
+          op().update(t);
       });
-    if (op().depends_on_solution())
+    if (archive.loads() && op().depends_on_solution())
       with_formulas(this->dofs().get_communicator(), [&] { op().take_material_at(solution); });
-  }
-
-
-  template <int dim>
-  nlohmann::ordered_json DiffusionProblem<dim>::describe_solving() const
-  {
-    if (!stepper)
-      return {{"stepper", "steady"}, {"steps", 0}, {"iterations", steady_iterations}};
-    return describe_stepping(*stepper, op().spectrum());
+    op().exchange(archive, keys);
   }
 
 
@@ -406,23 +561,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void DiffusionProblem<dim>::add_totals(const double t, const RunContext &context)
-  {
-    add_diffusion_totals(*this, t, context);
-  }
-
-
-  template <int dim>
-  void DiffusionProblem<dim>::describe_scene(nlohmann::ordered_json &summary, const bool) const
-  {
-    describe_diffusion_scene(scene, summary);
-  }
-
-
-  template <int dim>
   unsigned int DiffusionProblem<dim>::steps_between_looks() const
   {
-    return guards->steps_between_looks();
+    if (!stepper || growth.suspects())
+      return 1;
+    // A look reads the values once, a step of one application all of K.
+    const std::string name = stepper->name();
+    return name == "euler" ? 10 : name == "rk4" || name == "rkc2" ? 3 : 1;
   }
 
 
@@ -436,46 +581,119 @@ namespace PeriDeal
   template <int dim>
   Trip DiffusionProblem<dim>::watch(const double t)
   {
-    return guards->watch(t);
+    if (scene.time.steady)
+      return Problem<dim>::watch(t);
+    ledger.see(stepper->entered(), this->dofs().get_communicator());
+    const auto before = op().n_applications();
+    const auto given  = range_of_given(scene, op());
+    // What a solid releases beside bonds that break is as uneven as noise of the mesh, and grows
+    // from load step to load step, though the steps of the heat problem are sound.
+    const Trip trip = heated_by_solid ? Problem<dim>::watch(t) :
+                                        growth.look(op(),
+                                                    solution,
+                                                    t,
+                                                    given ? &*given : nullptr,
+                                                    place_of_nodes(this->dofs()),
+                                                    this->field_name());
+    op().carry_over_applications(before - op().n_applications()); // a look is none of the run's
+    const Trip of_step = steps.look(*stepper, scene.time.end_time, t);
+    return trip ? trip : of_step;
   }
 
 
   template <int dim>
   Trip DiffusionProblem<dim>::watch_totals(const double t) const
   {
-    return guards->watch_totals(t);
+    const std::string &quantity = names_of(scene.general.physics).quantity;
+    return stepper ? heat_lost(op(), ledger, quantity, t) : Trip();
   }
 
 
   template <int dim>
-  void DiffusionProblem<dim>::explain(Trip &trip)
+  std::string DiffusionProblem<dim>::own_cause(const Trip &trip)
   {
-    guards->explain(trip);
+    const std::string       cause = stepper ? cause_in_step(*stepper, op(), solution, trip) : "";
+    const MaterialProperty &conductivity = scene.material.conductivity;
+    if (!cause.empty() || conductivity.depends_on_temperature())
+      return cause;
+    return cause_in_contrast<dim>(
+      this->dofs().get_triangulation(),
+      "'Conductivity'",
+      [&](const Point<dim> &p) { return conductivity.value(p); },
+      trip.monitor);
   }
 
 
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(Model<dim>       &model,
-                                                                const Scene<dim> &scene)
+  std::vector<std::string> DiffusionProblem<dim>::columns() const
   {
-    std::unique_ptr<DiffusionProblem<dim>> run;
-    if (model.kind == ModelKind::peridynamics &&
-        scene.peridynamics.treatment != BoundaryTreatment::exchange)
-      run = make_bond_diffusion(model, scene);
-    else
-      run = make_element_diffusion(model, scene);
-    set_start(*run);
-    return run;
+    return {"value"};
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                      \
-  template class DiffusionProblem<dim>;                                                \
-  template void                                   set_start(DiffusionProblem<dim> &);  \
-  template std::unique_ptr<DiffusionProblem<dim>> make_diffusion_problem(Model<dim> &, \
-                                                                         const Scene<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  template <int dim>
+  std::vector<double> DiffusionProblem<dim>::at_points(
+    const PointEvaluator<dim> &reader,
+    const std::vector<std::vector<double>> &) const
+  {
+    solution.update_ghost_values();
+    std::vector<double> values = reader.evaluate(solution);
+    solution.set_ghost_state(false);
+    return values;
+  }
+
+
+  template <int dim>
+  std::vector<OutputField> DiffusionProblem<dim>::fields(const double t) const
+  {
+    std::vector<OutputField> list{{this->field_name(), {solution}}};
+    list[0].components[0].update_ghost_values();
+    solution.update_ghost_values();
+    with_formulas(this->dofs().get_communicator(), [&] {
+      for (OutputField &field : body.derived_fields(solution, t))
+        list.push_back(std::move(field));
+    });
+    solution.set_ghost_state(false);
+    return list;
+  }
+
+
+  template <int dim>
+  Difference DiffusionProblem<dim>::error(const ExactSolution &exact, const double t) const
+  {
+    solution.update_ghost_values();
+    const Difference result =
+      body.difference_to(solution, [&](const Point<dim> &p) { return exact_row(exact, p, t)[0]; });
+    solution.set_ghost_state(false);
+    return result;
+  }
+
+
+  template <int dim>
+  std::vector<double> DiffusionProblem<dim>::exact_row(const ExactSolution &exact,
+                                                       const Point<dim>    &point,
+                                                       const double         t) const
+  {
+    double x[dim];
+    for (unsigned int d = 0; d < dim; ++d)
+      x[d] = point[d];
+    return {exact.value(x, t)};
+  }
+
+
+  template <int dim>
+  std::unique_ptr<DiffusionField<dim>> make_diffusion_field(Model<dim>       &model,
+                                                            const Scene<dim> &scene)
+  {
+    const bool of_bonds = model.kind == ModelKind::peridynamics &&
+                          scene.peridynamics.treatment != BoundaryTreatment::exchange;
+    auto field = of_bonds ? make_bond_diffusion(model, scene) :
+                            make_element_diffusion(model, scene);
+    set_start(*field);
+    return field;
+  }
+
+
+  PERIDEAL_INSTANTIATE_CLASS(class DiffusionProblem);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_diffusion_field);
 } // namespace PeriDeal

@@ -7,13 +7,12 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <perideal/analysis/coupling_certificate.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/scene/lists.h>
 
-#include <optional>
-
-#include "diffusion_notes.h"
 #include "diffusion_parts.h"
 
 namespace PeriDeal
@@ -22,22 +21,99 @@ namespace PeriDeal
 
   namespace
   {
+    /**
+     * Cells in which materials of different conductivity meet, and cells that cracks take away.
+     * Collective.
+     *
+     * @param cut by the active index of cells
+     */
     template <int dim>
-    class ElementDiffusion : public DiffusionProblem<dim>
+    std::vector<std::string> notes_on_cells(const DoFHandler<dim>   &dofs,
+                                            const Scene<dim>        &scene,
+                                            const std::vector<bool> &cut)
+    {
+      constexpr double much      = 3.; // of conductivities
+      const bool       one       = scene.material.uniform_conductivity(),
+                 removes         = scene.cracks.mesh == CrackMesh::removed;
+      unsigned long long n_mixed = 0, n_removed = 0;
+      double             largest = 1., volume = 0.;
+      FEValues<dim>      values(dofs.get_fe(),
+                           QGauss<dim>(dofs.get_fe().degree + 1),
+                           update_quadrature_points);
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            if (removes && cut[cell->active_cell_index()])
+              {
+                ++n_removed;
+                volume += cell->measure();
+                continue;
+              }
+            if (one || cut[cell->active_cell_index()]) // cut cells conduct in pairs
+              continue;
+            values.reinit(cell);
+            double sum = 0., resistance = 0., least = 1e300, most = 0.;
+            for (const Point<dim> &x : values.get_quadrature_points())
+              {
+                const double T     = scene.initial_and_source.initial_value.value(x);
+                const double kappa = scene.material.conductivity.value(x, T);
+                sum += kappa;
+                resistance += 1. / kappa;
+                least = std::min(least, kappa);
+                most  = std::max(most, kappa);
+              }
+            if (most < much * least)
+              continue;
+            ++n_mixed;
+            largest = std::max(largest, sum * resistance / std::pow(values.n_quadrature_points, 2));
+          }
+      const auto communicator = dofs.get_communicator();
+      n_mixed                 = Utilities::MPI::sum(n_mixed, communicator);
+      n_removed               = Utilities::MPI::sum(n_removed, communicator);
+      largest                 = Utilities::MPI::max(largest, communicator);
+      volume                  = Utilities::MPI::sum(volume, communicator);
+      std::vector<std::string> list;
+      if (n_mixed > 0)
+        list.push_back(
+          "in " + std::to_string(n_mixed) + (n_mixed == 1 ? " cell" : " cells") +
+          " materials meet inside, with the mean of their conductivities: right for what flows along the interface, and up to " +
+          rounded_text(largest) +
+          " times too much for what crosses it. 'Cells' in section 'Domain' with which interfaces lie on faces make it exact; more cells make it less.");
+      if (n_removed > 0)
+        {
+          double length = 0.;
+          for (const auto &crack : scene.cracks.cracks)
+            length += dim == 2 ? crack[0].distance(crack[1]) : 0.;
+          list.push_back(
+            "the crack takes away " + std::to_string(n_removed) +
+            " cells ('Mesh = removed' in section 'Cracks')" +
+            (length > 0. ? ", a gap " + rounded_text(volume / length) +
+                             " wide in the mean, in place of a crack" :
+                           std::string()) +
+            ". 'pairs' with 'Surface correction = crack scaling' (section 'Peridynamics') keeps the conduction along it.");
+        }
+      return list;
+    }
+
+
+    template <int dim>
+    class ElementDiffusion : public DiffusionField<dim>
     {
     public:
-      using DiffusionProblem<dim>::scene;
+      using Field<dim>::on;
+      using Field<dim>::scene;
+      using Field<dim>::handler;
+      using Field<dim>::node_set;
+      using Field<dim>::solution;
 
       /**
        * @param on finite elements, coupled, or peridynamics by exchange, which is `coupled` with
        *           the zone everywhere
        */
       ElementDiffusion(Model<dim> &on, const Scene<dim> &scene)
-        : DiffusionProblem<dim>(scene)
-        , on(on)
+        : DiffusionField<dim>(on, scene)
         , model(on.kind)
         , element(model == ModelKind::finite_elements ? scene.finite_elements.degree : 1)
-        , handler(on.dofs())
       {
         number_unknowns();
         build_operator();
@@ -46,46 +122,9 @@ namespace PeriDeal
           certify();
       }
 
-      std::string name() const override
-      {
-        return scene.general.name_of(model);
-      }
-
-      const DoFHandler<dim> &dofs() const override
-      {
-        return handler;
-      }
-
-      const Nodes<dim> *nodes() const override
-      {
-        return model == ModelKind::peridynamics ? node_set : nullptr;
-      }
-
-      Point<dim> position(const unsigned int node) const override
-      {
-        Assert(node_set, ExcMessage("Finite elements alone have no peridynamic nodes."));
-        return node_set->position(node);
-      }
-
-      double volume(const unsigned int node) const override
-      {
-        Assert(node_set, ExcMessage("Finite elements alone have no peridynamic nodes."));
-        return node_set->volume(node);
-      }
-
-      DiffusionOperator &op() const override
+      FEMOperator<dim> &op() const override
       {
         return *fem;
-      }
-
-      bool update(const double t) override
-      {
-        return fem->update(t);
-      }
-
-      bool follow(const ChangeSet<dim> &damage) override
-      {
-        return fem->follow(damage);
       }
 
       void set_initial_value(Vector &u) const override
@@ -119,19 +158,19 @@ namespace PeriDeal
 
       RecoveryIndicators indicators() const override
       {
-        this->solution.update_ghost_values();
+        solution.update_ghost_values();
         const RecoveryIndicators found =
-          recovery_indicators<dim>(handler, scene.material, fem->cut_cells(), this->solution);
-        this->solution.set_ghost_state(false);
+          recovery_indicators<dim>(handler, scene.material, fem->cut_cells(), solution);
+        solution.set_ghost_state(false);
         return found;
       }
 
       void before_remesh() override
       {
-        heat_before = fem->heat(this->solution);
-        this->solution.update_ghost_values();
+        heat_before = fem->heat(solution);
+        solution.update_ghost_values();
         transfer = std::make_unique<Transfer>(handler);
-        transfer->prepare_for_coarsening_and_refinement(this->solution);
+        transfer->prepare_for_coarsening_and_refinement(solution);
       }
 
       void rebuild(const double t) override
@@ -141,28 +180,21 @@ namespace PeriDeal
         on.forget();
         number_unknowns();
         build_operator(t);
-        this->time_of_start = t;
         fem->carry_over_applications(applications);
-        fem->initialize_vector(this->solution);
+        fem->initialize_vector(solution);
       }
 
-      void after_remesh(const double t, const bool steady) override
+      double move_solution(const double t, const bool steady) override
       {
-        rebuild(t);
-        Vector &u = this->solution;
-        transfer->interpolate(u);
+        transfer->interpolate(solution);
         transfer.reset();
-        fem->hanging_nodes().interpolate(u);
-        const double kept = fem->heat(u), lost = heat_before - kept;
-        fem->distribute(u, t); // what new nodes on Dirichlet sides get comes from outside
-        this->ledger.add(fem->heat(u) - kept);
+        fem->hanging_nodes().interpolate(solution);
+        const double kept = fem->heat(solution), lost = heat_before - kept;
+        fem->distribute(solution, t); // what new nodes on Dirichlet sides get comes from outside
+        const double came = fem->heat(solution) - kept;
         if (!steady)
           give_heat(lost, t);
-      }
-
-      std::string field_name() const override
-      {
-        return names_of(scene.general.physics).field;
+        return came;
       }
 
       std::vector<OutputField> derived_fields(const Vector &u, const double) const override
@@ -235,28 +267,23 @@ namespace PeriDeal
         });
       }
 
-      std::vector<std::string> own_notes() const override
+      std::vector<std::string> notes() const override
       {
         std::vector<std::string> list = doubts;
-        if (certificate && !certificate->fault().empty())
-          list.push_back(certificate->fault() +
+        if (this->certificate && !this->certificate->fault().empty())
+          list.push_back(this->certificate->fault() +
                          ". 'Scheme = exchange' (section 'Coupling') has neither fault.");
         return list;
       }
 
-      const CouplingCertificate *examined() const override
+      ChosenSettings settings() const override
       {
-        return certificate ? &*certificate : nullptr;
-      }
-
-      std::vector<std::pair<std::string, std::string>> settings() const override
-      {
-        std::vector<std::pair<std::string, std::string>> list{
+        ChosenSettings list{
           {"element", "Q" + std::to_string(element.degree)},
           {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
         if (model != ModelKind::finite_elements)
           {
-            for (const auto &setting : bond_settings(scene, fem->bonds().families()))
+            for (const auto &setting : this->bond_settings(fem->bonds().families()))
               if (setting.first != "boundary treatment" || model == ModelKind::peridynamics)
                 list.push_back(setting);
             list.emplace_back("coupling",
@@ -266,7 +293,7 @@ namespace PeriDeal
                               model == ModelKind::coupled ? scene.coupling.zone_text() :
                                                             "everywhere");
             list.emplace_back("share of the body in the zone",
-                              to_text(100. * fem->bonds().zone_share()) + " %");
+                              rounded_text(100. * fem->bonds().zone_share(), 6) + " %");
           }
         else if (scene.peridynamics.scales_beside_cracks() && scene.cracks.cut_pairs())
           list.emplace_back("surface correction", "crack scaling");
@@ -339,8 +366,7 @@ namespace PeriDeal
        */
       void give_heat(const double lost, const double t)
       {
-        Vector                              &u = this->solution;
-        Vector                               share(u.get_partitioner());
+        Vector                               share(solution.get_partitioner());
         const double                         spacing = scene.domain.spacing()[0];
         std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
         for (const auto &cell : handler.active_cell_iterators())
@@ -355,8 +381,8 @@ namespace PeriDeal
         fem->hanging_nodes().interpolate(share);
         const double capacity = fem->heat(share);
         if (capacity > 0.)
-          u.add(lost / capacity, share);
-        fem->distribute(u, t);
+          solution.add(lost / capacity, share);
+        fem->distribute(solution, t);
       }
 
       void build_operator(const double start = 0.)
@@ -379,9 +405,10 @@ namespace PeriDeal
       void certify()
       {
         Timings::Scope scope(this->timings, "certificate");
-        certificate = examine_coupling(*fem, fem->symmetric());
+        const auto     found = examine_coupling(*fem, fem->symmetric());
         if (scheme() == CouplingScheme::exchange) // of the others the user is told
-          certificate->require_sound();
+          found.require_sound();
+        this->certificate = std::make_shared<CouplingCertificate>(found);
       }
 
       /** Peridynamics alone has nothing to splice or to blend with. */
@@ -451,7 +478,7 @@ namespace PeriDeal
                              Quadrature<dim>(element.get_unit_support_points()),
                              update_quadrature_points);
         std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
-        const auto                          &owned = this->solution.get_partitioner();
+        const auto                          &owned = solution.get_partitioner();
         for (const auto &cell : handler.active_cell_iterators())
           if (!cell->is_artificial())
             {
@@ -463,33 +490,23 @@ namespace PeriDeal
             }
       }
 
-      Model<dim>                        &on;
-      const ModelKind                    model;
-      FE_Q<dim>                          element;
-      const DoFHandler<dim>             &handler;
-      Nodes<dim>                        *node_set = nullptr; // null for finite elements alone
-      std::unique_ptr<FEMOperator<dim>>  fem;
-      std::optional<CouplingCertificate> certificate;
-      std::vector<std::string>           doubts;   // about cells at the start
-      std::unique_ptr<Transfer>          transfer; // while the mesh changes
-      double                             heat_before = 0.;
+      const ModelKind                   model;
+      FE_Q<dim>                         element;
+      std::unique_ptr<FEMOperator<dim>> fem;
+      std::vector<std::string>          doubts;   // about cells at the start
+      std::unique_ptr<Transfer>         transfer; // while the mesh changes
+      double                            heat_before = 0.;
     };
   } // namespace
 
 
   template <int dim>
-  std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(Model<dim>       &model,
-                                                                const Scene<dim> &scene)
+  std::unique_ptr<DiffusionField<dim>> make_element_diffusion(Model<dim>       &model,
+                                                              const Scene<dim> &scene)
   {
     return std::make_unique<ElementDiffusion<dim>>(model, scene);
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                      \
-  template std::unique_ptr<DiffusionProblem<dim>> make_element_diffusion(Model<dim> &, \
-                                                                         const Scene<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(make_element_diffusion);
 } // namespace PeriDeal

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/vector_operation.h>
 
+#include <perideal/analysis/bond_intensities.h>
 #include <perideal/analysis/coupling_certificate.h>
+#include <perideal/analysis/front_intensity.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
+#include <perideal/laws/elasticity.h>
 #include <perideal/laws/entropy_of_deformation.h>
 #include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <optional>
 
-#include "diffusion_parts.h"
-#include "element_intensities.h"
-#include "solid_fields.h"
+#include "solid_parts.h"
 
 namespace PeriDeal
 {
@@ -24,17 +28,249 @@ namespace PeriDeal
 
   namespace
   {
+    /**
+     * Gauss points along an edge in rings about ends of cracks, above the degree of elements: the
+     * weights and near fields are no polynomials, and cells may be a third of a ring.
+     */
+    constexpr unsigned int more_points_in_rings(const unsigned int dim)
+    {
+      return dim == 2 ? 5 : 2;
+    }
+
+
     template <int dim>
-    class ElementSolid : public SolidProblem<dim>
+    bool is_warm(const ElasticityControl &elasticity)
+    {
+      return elasticity.computes_temperature || !elasticity.temperature_change.is_constant() ||
+             elasticity.temperature_change.value(Point<dim>()) != 0.;
+    }
+
+
+    /** Within the plane. @param change of the temperature, if it is computed */
+    template <int dim>
+    double strain_of_heat(const Scene<dim>             &scene,
+                          const Point<dim>             &p,
+                          const Vector                 &change,
+                          const types::global_dof_index node)
+    {
+      return thermal_strain_factor(scene.material.moduli(p), dim, scene.elasticity.plane) *
+             scene.material.thermal_expansion.value(p) *
+             (change.size() > 0 ? change(node) : scene.elasticity.temperature_change.value(p));
+    }
+
+
+    /** What an element knows of one of its points; FEValues has been through reinit(). */
+    template <int dim>
+    class CellPoints
     {
     public:
-      using SolidProblem<dim>::scene;
+      CellPoints(const FEValuesBase<dim>                    &values,
+                 const std::vector<types::global_dof_index> &nodes,
+                 const Scene<dim>                           &scene,
+                 const Vector                               &change,
+                 const bool                                  warm)
+        : values(values)
+        , nodes(nodes)
+      {
+        const auto &cell = values.get_cell();
+        for (unsigned int k = 0; k < nodes.size() && warm; ++k)
+          {
+            const Point<dim> node = values.get_mapping().transform_unit_to_real_cell(
+              cell,
+              values.get_fe().unit_support_point(k));
+            // On the cell's own side of cracks, with its own material.
+            strains.push_back(
+              strain_of_heat(scene, node + 1e-6 * (cell->center() - node), change, nodes[k]));
+          }
+      }
+
+      RingPoint<dim> at(const unsigned int q, const Vector &u) const
+      {
+        RingPoint<dim> point;
+        point.place  = values.quadrature_point(q);
+        point.weight = values.JxW(q);
+        for (unsigned int k = 0; k < nodes.size(); ++k)
+          for (unsigned int d = 0; d < dim; ++d)
+            point.gradient[d] += u(dim * nodes[k] + d) * values.shape_grad(k, q);
+        for (unsigned int k = 0; k < strains.size(); ++k)
+          {
+            point.thermal_strain += strains[k] * values.shape_value(k, q);
+            point.thermal_slope += strains[k] * values.shape_grad(k, q);
+          }
+        return point;
+      }
+
+    private:
+      const FEValuesBase<dim>                    &values;
+      const std::vector<types::global_dof_index> &nodes;
+      std::vector<double>                         strains; // of heat, at the nodes
+    };
+  } // namespace
+
+
+  namespace
+  {
+    UpdateFlags needed_in_rings()
+    {
+      return update_values | update_gradients | update_quadrature_points | update_JxW_values;
+    }
+
+
+    /** Gives the ends of cracks what cells know. */
+    template <int dim>
+    class RingCells
+    {
+    public:
+      using Cell = typename DoFHandler<dim>::active_cell_iterator;
+
+      /**
+       * @param bonds there are some along cracks
+       * @param t     of body forces
+       */
+      RingCells(const Scene<dim>           &scene,
+                const ElasticElements<dim> &elements,
+                const DoFHandler<dim>      &dofs,
+                const Vector               &u,
+                const bool                  bonds,
+                const double                t)
+        : scene(scene)
+        , elements(elements)
+        , u(u)
+        , bonds(bonds)
+        , t(t)
+        , inside(dofs.get_fe(),
+                 QGauss<dim>(dofs.get_fe().degree + more_points_in_rings(dim)),
+                 needed_in_rings())
+        , edge(dofs.get_fe(),
+               QGauss<dim - 1>(dofs.get_fe().degree + more_points_in_rings(dim)),
+               needed_in_rings() | update_normal_vectors)
+        , nodes(dofs.get_fe().n_dofs_per_cell())
+      {}
+
+      template <typename Integral>
+      void add(const Cell &cell, std::vector<Integral> &ends)
+      {
+        inside.reinit(cell);
+        visit(cell, inside, [&](const RingPoint<dim> &point, const unsigned int) {
+          for (auto &end : ends)
+            end.add(point);
+        });
+        // Beside a crack that bonds know there is a body up to the crack.
+        for (const unsigned int face : cell->face_indices())
+          {
+            if (cell->at_boundary(face) || !cell->neighbor(face)->is_active() ||
+                !elements.cut_cells()[cell->neighbor(face)->active_cell_index()])
+              continue;
+            edge.reinit(cell, face);
+            visit(cell, edge, [&](const RingPoint<dim> &point, const unsigned int q) {
+              for (auto &end : ends)
+                end.add_strip(point, edge.normal_vector(q), bonds);
+            });
+          }
+      }
+
+    private:
+      template <typename Visit>
+      void visit(const Cell &cell, const FEValuesBase<dim> &values, const Visit &give)
+      {
+        cell->get_dof_indices(nodes);
+        const auto           &force = scene.initial_and_source.body_force;
+        const CellPoints<dim> points(values,
+                                     nodes,
+                                     scene,
+                                     elements.temperature_change(),
+                                     is_warm<dim>(scene.elasticity));
+        for (const unsigned int q : values.quadrature_point_indices())
+          {
+            RingPoint<dim> point = points.at(q, u);
+            for (unsigned int d = 0; d < dim && !force.empty(); ++d)
+              point.force[d] = force[d].value(point.place, t);
+            give(point, q);
+          }
+      }
+
+      const Scene<dim>                    &scene;
+      const ElasticElements<dim>          &elements;
+      const Vector                        &u;
+      const bool                           bonds;
+      const double                         t;
+      FEValues<dim>                        inside;
+      FEFaceValues<dim>                    edge;
+      std::vector<types::global_dof_index> nodes;
+    };
+
+
+    /**
+     * J is right to the order of the energy, the interaction integrals to that of stresses: so
+     * their ratio tells the modes, and J how much there is of both.
+     */
+    template <int dim>
+    void take_amount_of_j(const Scene<dim> &scene, StressIntensity &found)
+    {
+      constexpr double alike  = 0.2;
+      const Moduli     moduli = scene.material.moduli(scene.domain.lower);
+      const double     E = moduli.young(), nu = moduli.poisson(),
+                   plane_modulus =
+                     scene.elasticity.plane == PlaneState::stress ? E : E / (1. - nu * nu),
+                   square = found.mode_1 * found.mode_1 + found.mode_2 * found.mode_2,
+                   ratio  = plane_modulus * found.j / square;
+      if (dim != 2 || !(square > 0.) || !(std::abs(ratio - 1.) < alike))
+        return;
+      found.mode_1 *= std::sqrt(ratio);
+      found.mode_2 *= std::sqrt(ratio);
+    }
+
+
+    /**
+     * CrackEndIntegral, in three dimensions FrontIntegral, of elements. Cells that cracks cut have
+     * no stress: up to the crack all is as on the faces of the cells beside them.
+     * @param bonds that are along cracks bear what cut cells do not; else these are no part of the
+     *              body (CrackEndIntegral::add_strip())
+     * @param t     of body forces
+     * Collective.
+     */
+    template <int dim>
+    std::vector<StressIntensity> intensities_of_cells(const Scene<dim>           &scene,
+                                                      const ElasticElements<dim> &elements,
+                                                      const DoFHandler<dim>      &dofs,
+                                                      const Vector               &u,
+                                                      const bool                  bonds,
+                                                      const double                t)
+    {
+      std::vector<StressIntensity> list;
+      auto                         ends = crack_end_integrals(scene, elements.crack_time());
+      if (ends.empty())
+        return list;
+      RingCells<dim> cells(scene, elements, dofs, u, bonds, t);
+      u.update_ghost_values();
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned() && !elements.cut_cells()[cell->active_cell_index()] &&
+            std::any_of(ends.begin(), ends.end(), [&](const auto &end) {
+              return end.reaches(cell->center(), cell->diameter());
+            }))
+          cells.add(cell, ends);
+      u.set_ghost_state(false);
+      for (auto &end : ends)
+        list.push_back(end.result(dofs.get_communicator()));
+      if (scene.cracks.on_faces())
+        for (StressIntensity &found : list)
+          take_amount_of_j(scene, found);
+      return list;
+    }
+
+
+    template <int dim>
+    class ElementSolid : public SolidField<dim>
+    {
+    public:
+      using Field<dim>::scene;
+      using Field<dim>::handler;
+      using Field<dim>::solution;
 
       /** @param on finite elements or coupled */
       ElementSolid(Model<dim> &on, const Scene<dim> &scene)
-        : SolidProblem<dim>(scene)
+        : SolidField<dim>(on, scene)
         , model(on.kind)
-        , handler(on.dofs())
       {
         {
           Timings::Scope scope(this->timings, "unknowns");
@@ -50,25 +286,10 @@ namespace PeriDeal
         // Its fields would have to be mirrored, too.
         if (model == ModelKind::coupled && scene.coupling.certificate &&
             elements->mirrors().empty())
-          certify(on);
+          certify();
       }
 
-      std::string name() const override
-      {
-        return scene.general.name_of(model);
-      }
-
-      const DoFHandler<dim> &dofs() const override
-      {
-        return handler;
-      }
-
-      const Nodes<dim> *nodes() const override
-      {
-        return nullptr;
-      }
-
-      ElasticOperator &op() const override
+      ElasticElements<dim> &op() const override
       {
         return *elements;
       }
@@ -105,8 +326,8 @@ namespace PeriDeal
         std::array<std::vector<Tensor<1, dim>>, dim> slopes;
         for (unsigned int d = 0; d < dim; ++d)
           {
-            u[d]      = reader.evaluate(this->displacement, dim, d);
-            slopes[d] = reader.gradients(this->displacement, dim, d);
+            u[d]      = reader.evaluate(solution, dim, d);
+            slopes[d] = reader.gradients(solution, dim, d);
           }
         std::vector<double> changes; // of the temperature
         if (const Vector change(elements->temperature_change()); change.size() > 0)
@@ -147,14 +368,14 @@ namespace PeriDeal
         return rows;
       }
 
-      std::vector<OutputField> fields(const double) const override
+      std::vector<OutputField> fields() const override
       {
         std::vector<SymmetricTensor<2, 3>>   stress;
         std::vector<SymmetricTensor<2, dim>> strain;
         find_nodal_tensors(stress, strain);
-        SolidFields<dim> list(elements->node_layout());
-        list.add_vector("displacement", this->displacement);
-        if (this->stepper)
+        NodalFields<dim> list(elements->node_layout());
+        list.add_vector("displacement", solution);
+        if (this->velocity.size() > 0)
           list.add_vector("velocity", this->velocity);
         list.add_stress(stress);
         list.add_strain(strain);
@@ -226,7 +447,7 @@ namespace PeriDeal
           return intensities_of_cells(scene,
                                       *elements,
                                       handler,
-                                      this->displacement,
+                                      solution,
                                       model == ModelKind::coupled,
                                       time);
         else
@@ -254,19 +475,19 @@ namespace PeriDeal
         return samples;
       }
 
-      std::vector<std::pair<std::string, std::string>> settings() const override
+      ChosenSettings settings() const override
       {
-        std::vector<std::pair<std::string, std::string>> list;
+        ChosenSettings list;
         list.emplace_back("elements", "Q" + std::to_string(degree()));
         if (model == ModelKind::coupled)
           {
             list.emplace_back("coupling", scene.coupling.scheme_text());
             list.emplace_back("zone", scene.coupling.zone_text());
             list.emplace_back("share of the body in the zone",
-                              to_text(100. * elements->bonds().zone_share()) + " %");
+                              rounded_text(100. * elements->bonds().zone_share(), 6) + " %");
           }
         if (model == ModelKind::coupled)
-          for (auto setting : bond_settings(scene, elements->bonds().families()))
+          for (auto setting : this->bond_settings(elements->bonds().families()))
             {
               // Bonds of the zone are not continued beyond sides by themselves.
               if (setting.first == "surface correction" &&
@@ -281,21 +502,16 @@ namespace PeriDeal
 
       std::vector<std::string> notes() const override
       {
-        if (!certificate || certificate->fault().empty())
+        if (!this->certificate || this->certificate->fault().empty())
           return {};
         return {
           "'Scheme = " + scene.coupling.scheme_text() +
-          "' in section 'Coupling': " + certificate->fault() +
+          "' in section 'Coupling': " + this->certificate->fault() +
           ". A zone that stays more than two horizons clear of the sides, and a wider 'Overlap', make it less; 'exchange' has none of it."};
       }
 
-      const CouplingCertificate *examined() const override
-      {
-        return certificate ? &*certificate : nullptr;
-      }
-
     private:
-      void certify(Model<dim> &on)
+      void certify()
       {
         Timings::Scope scope(this->timings, "certificate");
         // Where nodes join the zone later, as if they had.
@@ -305,12 +521,13 @@ namespace PeriDeal
             at_end = std::make_unique<ElasticElements<dim>>(
               handler,
               scene,
-              make_solid_coupling(on.nodes(scene, NodalVolume::partial), scene));
+              make_solid_coupling(this->on.nodes(scene, NodalVolume::partial), scene));
             at_end->join_whole_way();
           }
-        certificate = examine_coupling(at_end ? *at_end : *elements);
+        const auto found = examine_coupling(at_end ? *at_end : *elements);
         if (scene.coupling.exchanges()) // of the others the user is told
-          certificate->require_sound();
+          found.require_sound();
+        this->certificate = std::make_shared<CouplingCertificate>(found);
       }
 
       unsigned int degree() const
@@ -320,27 +537,19 @@ namespace PeriDeal
 
       /**
        * Call visit(values, point, indices of the nodes, gradient of the displacement) at the points
-       * of all own cells, or of those that are chosen.
+       * of all own cells.
        */
       template <typename Visit>
       void visit_cells(const Quadrature<dim> &points, const Visit &visit) const
-      {
-        visit_cells(points, visit, [](const auto &) { return true; });
-      }
-
-      template <typename Visit, typename Choose>
-      void visit_cells(const Quadrature<dim> &points,
-                       const Visit           &visit,
-                       const Choose          &choose) const
       {
         FEValues<dim>                        values(handler.get_fe(),
                              points,
                              update_values | update_gradients | update_quadrature_points |
                                update_JxW_values);
         std::vector<types::global_dof_index> indices(handler.get_fe().n_dofs_per_cell());
-        this->displacement.update_ghost_values();
+        solution.update_ghost_values();
         for (const auto &cell : handler.active_cell_iterators())
-          if (cell->is_locally_owned() && choose(cell))
+          if (cell->is_locally_owned())
             {
               values.reinit(cell);
               cell->get_dof_indices(indices);
@@ -349,12 +558,11 @@ namespace PeriDeal
                   Tensor<2, dim> gradient;
                   for (unsigned int i = 0; i < indices.size(); ++i)
                     for (unsigned int d = 0; d < dim; ++d)
-                      gradient[d] +=
-                        this->displacement(dim * indices[i] + d) * values.shape_grad(i, q);
+                      gradient[d] += solution(dim * indices[i] + d) * values.shape_grad(i, q);
                   visit(values, q, indices, gradient);
                 }
             }
-        this->displacement.set_ghost_state(false);
+        solution.set_ghost_state(false);
       }
 
       /** What numbers of nodes, with current ghosts, are at the point q of a cell. */
@@ -431,23 +639,17 @@ namespace PeriDeal
       }
 
       const ModelKind                       model;
-      const DoFHandler<dim>                &handler;
       std::unique_ptr<ElasticElements<dim>> elements;
-      std::optional<CouplingCertificate>    certificate;
     };
   } // namespace
 
 
   template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_element_solid(Model<dim> &model, const Scene<dim> &scene)
+  std::unique_ptr<SolidField<dim>> make_element_solid(Model<dim> &model, const Scene<dim> &scene)
   {
     return std::make_unique<ElementSolid<dim>>(model, scene);
   }
 
-#define PERIDEAL_INSTANTIATE(dim) \
-  template std::unique_ptr<SolidProblem<dim>> make_element_solid(Model<dim> &, const Scene<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+
+  PERIDEAL_INSTANTIATE_FUNCTION(make_element_solid);
 } // namespace PeriDeal

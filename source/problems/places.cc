@@ -3,7 +3,9 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/problems/places.h>
+#include <perideal/base/instantiate.h>
+#include <perideal/base/point_order.h>
+#include <perideal/problems/check_sides.h>
 
 #include <algorithm>
 #include <array>
@@ -143,10 +145,7 @@ namespace PeriDeal
             all.push_back(piece);
           }
       std::sort(all.begin(), all.end(), [](const Piece<dim> &a, const Piece<dim> &b) {
-        for (unsigned int d = 0; d < dim; ++d)
-          if (a.center[d] != b.center[d])
-            return a.center[d] < b.center[d];
-        return false;
+        return comes_first(a.center, b.center);
       });
       return all;
     }
@@ -295,12 +294,5 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                \
-  template json places_of_conditions(const Scene<dim> &,         \
-                                     const Triangulation<dim> &, \
-                                     const MPI_Comm);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(places_of_conditions);
 } // namespace PeriDeal

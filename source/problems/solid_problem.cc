@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/node_keys.h>
-#include <perideal/problems/body_causes.h>
 #include <perideal/problems/diffusion_problem.h>
+#include <perideal/problems/run_context.h>
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/elasticity_control.h>
+#include <perideal/solvers/floating_part.h>
+#include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_tools.h>
 
@@ -16,30 +20,53 @@
 #include <limits>
 #include <sstream>
 
-#include "crack_growth.h"
-#include "damage_of_solid.h"
-#include "finite_results.h"
-#include "guard_causes.h"
-#include "heat_of_deformation.h"
-#include "solid_cost.h"
-#include "solid_error.h"
-#include "solid_fields.h"
-#include "solid_notes.h"
-#include "solid_phases.h"
-#include "solid_sides.h"
-#include "solid_summary.h"
-#include "solid_totals.h"
-#include "steps_with_formulas.h"
-
-// What the guards of a run look for in elastic bodies, and what brings it about.
+#include "problem_parts.h"
+#include "solid_parts.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /**
+     * Processor seconds of one equilibrium; -1 where the solver does not get there: the run will
+     * say why. Throws UserError, where it must be held, for a body with a part that nothing holds.
+     * Collective.
+     */
+    double time_of_linear_equilibrium(const SolverControlParameters &control,
+                                      ElasticOperator               &op,
+                                      const double                   t,
+                                      const bool                     must_be_held)
+    {
+      const double start = processor_seconds();
+      Vector       u, r, change;
+      for (Vector *const v : {&u, &r, &change})
+        op.initialize_vector(*v);
+      op.distribute(u, t);
+      op.residual(r, u, t);
+      LinearSolver solver(op, control.tolerance, control.max_iterations, control.direct_up_to);
+      if (must_be_held && r.l2_norm() > 0.)
+        check_no_loose_part(op, solver.surrogate(), r);
+      try
+        {
+          solver.solve(0., 1., change, r);
+        }
+      catch (const UserError &) // on all processes
+        {
+          return -1.;
+        }
+      return processor_seconds() - start;
+    }
+  } // namespace
+
+
   template <int dim>
-  SolidProblem<dim>::SolidProblem(const Scene<dim> &scene)
-    : scene(scene)
+  SolidProblem<dim>::SolidProblem(std::unique_ptr<SolidField<dim>> of)
+    : Problem<dim>(std::move(of))
+    , body(static_cast<SolidField<dim> &>(*this->field))
+    , displacement(this->field->solution)
+    , velocity(static_cast<SolidField<dim> &>(*this->field).velocity)
     , cracks(std::make_unique<CrackGrowth<dim>>())
     , told(std::make_unique<DamageOfSolid<dim>>())
   {}
@@ -50,25 +77,34 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<std::string> SolidProblem<dim>::columns() const
+  std::string SolidProblem<dim>::steady_name() const
   {
-    return solid_columns(scene);
+    return "the equilibrium";
   }
 
 
   template <int dim>
-  Difference SolidProblem<dim>::error(const ExactSolution &exact, const double t) const
+  typename SolidProblem<dim>::MotionParts SolidProblem<dim>::MotionParts::between(const double from,
+                                                                                  const double to,
+                                                                                  const double step)
   {
-    return error_of_displacement(*this, exact, t);
+    constexpr double most = 50.;
+    MotionParts      parts;
+    parts.n_steps      = std::max(1., std::ceil((to - from) / step * (1. - 1e-10)));
+    parts.span         = StepSpan::between(from, to);
+    parts.span.n_steps = static_cast<unsigned long long>(std::min(parts.n_steps, most));
+    return parts;
   }
 
 
   template <int dim>
-  std::vector<double> SolidProblem<dim>::exact_row(const ExactSolution &exact,
-                                                   const Point<dim>    &point,
-                                                   const double         t) const
+  double SolidProblem<dim>::MotionParts::next() const
   {
-    return exact_row_of_solid(scene, exact, point, t);
+    const unsigned long long part = span.n_done + 1;
+    if (part == span.n_steps)
+      return span.end;
+    return span.start +
+           (span.end - span.start) * std::floor(n_steps * part / span.n_steps) / n_steps;
   }
 
 
@@ -118,24 +154,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  StepperOptions SolidProblem<dim>::stepper_options() const
-  {
-    StepperOptions options;
-    options.time_step        = scene.time.time_step;
-    options.solver_tolerance = scene.solver.tolerance;
-    options.max_iterations   = scene.solver.max_iterations;
-    options.direct_up_to     = scene.solver.direct_up_to;
-    return options;
-  }
-
-
-  template <int dim>
   void SolidProblem<dim>::begin_motion(const RunContext &context)
   {
     Timings::Scope scope(this->timings, "stepper");
     with_formulas(this->dofs().get_communicator(), [&] { set_start(); });
     op().linearize(displacement);
-    stepper     = make_motion_stepper(scene.time.stepper, op(), stepper_options());
+    stepper     = make_motion_stepper(scene.time.stepper, op(), this->stepper_options());
     stable_step = stable_motion_step(op());
     if (scene.guards.goes_on())
       stepper->findings().let_wait();
@@ -315,7 +339,11 @@ namespace PeriDeal
     if (stepper)
       {
         archive.exchange("velocity", velocity, keys);
-        moving.exchange(archive);
+        {
+          const Archive::Part part(archive, "parts");
+          moving.span.exchange(archive);
+          archive.exchange("planned steps", moving.n_steps);
+        }
         stepper->exchange(archive, keys);
       }
     if (archive.loads())
@@ -352,8 +380,46 @@ namespace PeriDeal
       }
     // About as many steps as a run takes, whose first step is this one.
     const double step =
-      make_motion_stepper(scene.time.stepper, op(), stepper_options())->current_step();
+      make_motion_stepper(scene.time.stepper, op(), this->stepper_options())->current_step();
     estimate.applications = step > 0. ? scene.time.end_time / step : 0.;
+  }
+
+
+  template <int dim>
+  double SolidProblem<dim>::time_of_equilibria(const double      n_steps,
+                                               const RunContext &context,
+                                               double           &memory) const
+  {
+    ElasticOperator &op = body.op();
+    // Larger ones take longer than one likes to wait for a check; where there is no coarse lattice
+    // one waits some more.
+    constexpr double few_unknowns = 5e4, many_unknowns = 3e5;
+    // Iterations of other solvers over those of the linear one, where these are alike.
+    constexpr double of_full_kinematics = 3.;
+    if (scene.elasticity.solver == ElasticSolver::dynamic_relaxation ||
+        scene.elasticity.solver == ElasticSolver::adaptive_dynamic_relaxation)
+      return -1.;
+    const double n_unknowns = static_cast<double>(op.size().unknowns);
+    double       first      = 0.;
+    if (n_unknowns > few_unknowns)
+      first = context.estimate(this->name(), memory).time_of_solution;
+    if (first <= 0. && n_unknowns <= many_unknowns)
+      first =
+        Utilities::MPI::max(time_of_linear_equilibrium(scene.solver,
+                                                       op,
+                                                       scene.time.steady ? 0. : scene.time.end_time,
+                                                       !op.nonlinear()),
+                            this->dofs().get_communicator());
+    if (first <= 0.)
+      return -1.;
+    if (op.nonlinear())
+      first *= of_full_kinematics;
+    // A step whose loads grow in proportion starts from its solution, and looks at every bond.
+    constexpr double applications_of_step = 5.;
+    if (scene.time.steady)
+      return first;
+    const bool alike = !op.nonlinear() && !scene.warms_slowly() && scene.cracks.tips.empty();
+    return first + n_steps * (alike ? applications_of_step * time_of_application(op) : first);
   }
 
 
@@ -367,7 +433,7 @@ namespace PeriDeal
       {
         const double n_steps =
           scene.time.steady ? 1. : std::max(scene.time.end_time / load_step(), 1. * times.size());
-        return time_of_equilibria(*this, n_steps, context, memory);
+        return time_of_equilibria(n_steps, context, memory);
       }
     // By its first steps.
     const double step = stepper->current_step(), end = scene.time.end_time;
@@ -394,7 +460,7 @@ namespace PeriDeal
   {
     if (loading && !scene.time.steady)
       context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations");
-    PeriDeal::note_end(*this, context);
+    note_end_of_solid(*this, context);
   }
 
 
@@ -437,54 +503,6 @@ namespace PeriDeal
     note_equilibrium(*this, 0., context);
     tell_first_break(*this, 0., context);
     told->tell(*this);
-  }
-
-
-  template <int dim>
-  nlohmann::ordered_json SolidProblem<dim>::describe_solving() const
-  {
-    return describe_solving_of(*this);
-  }
-
-
-  template <int dim>
-  void SolidProblem<dim>::add_totals(const double t, const RunContext &context)
-  {
-    add_solid_totals(*this, t, context);
-    cracks->add_totals(*this, t, context);
-  }
-
-
-  template <int dim>
-  NewCracks SolidProblem<dim>::new_cracks() const
-  {
-    return cracks->surfaces(*this);
-  }
-
-
-  template <int dim>
-  void SolidProblem<dim>::describe_end(nlohmann::ordered_json &entry, ResultRecord &record) const
-  {
-    if (const auto phases =
-          describe_phases(*this, scene, record.totals, this->dofs().get_communicator());
-        !phases.empty())
-      entry["phases"] = phases;
-  }
-
-
-  template <int dim>
-  void SolidProblem<dim>::describe_scene(nlohmann::ordered_json &summary,
-                                         const bool              at_the_end) const
-  {
-    describe_solid_scene(scene, at_the_end, summary);
-  }
-
-
-  template <int dim>
-  std::unique_ptr<SolidProblem<dim>> make_solid_problem(Model<dim> &model, const Scene<dim> &scene)
-  {
-    return model.kind == ModelKind::peridynamics ? make_bond_solid(model, scene) :
-                                                   make_element_solid(model, scene);
   }
 
 
@@ -588,14 +606,14 @@ namespace PeriDeal
   template <int dim>
   Trip SolidProblem<dim>::watch(const double t)
   {
-    const PlaceOfNode place_of = place_of_nodes(*this);
-    const Extent      now      = extent_of(displacement);
+    const Extent now = extent_of(displacement);
     if (!now.finite)
-      return values_not_finite(displacement, dim, place_of, this->field_name(), t);
+      return Problem<dim>::watch(t);
     if (!stepper || op().nonlinear() || !op().brittle() || op().n_broken_bonds() == 0)
       return {};
-    return now.size() > body_size() ? flown_off(op(), displacement, dim, body_size(), place_of, t) :
-                                      Trip();
+    return now.size() > body_size() ?
+             flown_off(op(), displacement, dim, body_size(), place_of_nodes(this->dofs()), t) :
+             Trip();
   }
 
 
@@ -616,34 +634,36 @@ namespace PeriDeal
   template <int dim>
   void SolidProblem<dim>::explain(Trip &trip)
   {
-    const PlaceOfNode place_of = place_of_nodes(*this);
     if (trip.place.empty() && stepper)
-      trip.place = find_worst(velocity, dim, place_of, [&](const unsigned int i) {
-                     return std::abs(velocity.local_element(i));
-                   }).place;
-    if (trip.cause.empty() && trip.monitor == "balance")
-      trip.cause = cause_in_balance(scene.solver.tolerance);
-    if (trip.cause.empty() && stepper)
-      trip.cause = cause_in_motion(*stepper, op(), displacement);
-    if (trip.cause.empty())
-      trip.cause = cause_in_contrast<dim>(
-        this->dofs().get_triangulation(),
-        "The Young modulus",
-        [&](const Point<dim> &p) { return scene.material.moduli(p).young(); },
-        trip.monitor);
-    if (trip.cause.empty())
-      trip.cause = cause_in_operator(op(), place_of, trip);
+      trip.place =
+        find_worst(velocity, dim, place_of_nodes(this->dofs()), [&](const unsigned int i) {
+          return std::abs(velocity.local_element(i));
+        }).place;
+    Problem<dim>::explain(trip);
   }
 
 
-  template class SolidProblem<1>;
-  template class SolidProblem<2>;
-  template class SolidProblem<3>;
+  template <int dim>
+  std::string SolidProblem<dim>::own_cause(const Trip &trip)
+  {
+    const std::string cause = stepper ? cause_in_motion(*stepper, op(), displacement) : "";
+    return !cause.empty() ? cause :
+                            cause_in_contrast<dim>(
+                              this->dofs().get_triangulation(),
+                              "The Young modulus",
+                              [&](const Point<dim> &p) { return scene.material.moduli(p).young(); },
+                              trip.monitor);
+  }
 
-#define PERIDEAL_INSTANTIATE(dim) \
-  template std::unique_ptr<SolidProblem<dim>> make_solid_problem(Model<dim> &, const Scene<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+
+  template <int dim>
+  std::unique_ptr<SolidField<dim>> make_solid_field(Model<dim> &model, const Scene<dim> &scene)
+  {
+    return model.kind == ModelKind::peridynamics ? make_bond_solid(model, scene) :
+                                                   make_element_solid(model, scene);
+  }
+
+
+  PERIDEAL_INSTANTIATE_CLASS(class SolidProblem);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_solid_field);
 } // namespace PeriDeal

@@ -11,7 +11,6 @@
 #include <perideal/problems/check_sides.h>
 #include <perideal/problems/computable.h>
 #include <perideal/problems/problem_factory.h>
-#include <perideal/problems/reference.h>
 #include <perideal/problems/result_record.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/scene/expression.h>
@@ -54,6 +53,13 @@ namespace PeriDeal
       std::sort(stops.begin(), stops.end());
       stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
       return stops;
+    }
+
+
+    template <int dim>
+    AdaptiveProblem &adaptive(Problem<dim> &problem)
+    {
+      return dynamic_cast<AdaptiveProblem &>(problem);
     }
   } // namespace
 
@@ -534,7 +540,7 @@ namespace PeriDeal
       return;
     for (unsigned int round = 0; round < scene.domain.coarsening.times && adapt(0.); ++round)
       for (auto &problem : problems)
-        problem->start_anew();
+        adaptive(*problem).start_anew();
   }
 
 
@@ -547,7 +553,7 @@ namespace PeriDeal
     const auto guide = std::find_if(problems.begin(), problems.end(), [](const auto &problem) {
       return problem->name() == to_string(ModelKind::coupled);
     });
-    const RecoveryIndicators found = (*guide)->indicators();
+    const RecoveryIndicators found = adaptive(**guide).indicators();
     // A uniform field has fluxes of round-off only.
     constexpr double round_off = 1e-20;
     const double     least     = round_off * found.size / scene.domain.spacing().norm_square();
@@ -559,17 +565,17 @@ namespace PeriDeal
       if (!adaptation.grading->mark(*mesh, found.squares, target))
         return false;
       for (auto &problem : problems)
-        problem->before_remesh();
+        adaptive(*problem).before_remesh();
       adaptation.history.record(*mesh);
       adaptation.last_time = t;
       mesh->execute_coarsening_and_refinement();
     }
     with_formulas(communicator, [&] {
       for (auto &problem : problems)
-        problem->after_remesh(t, scene.time.steady);
+        adaptive(*problem).after_remesh(t, scene.time.steady);
     });
     for (auto &problem : problems)
-      problem->renew_stepper();
+      adaptive(*problem).renew_stepper();
     adaptation.readers_fit = false;
     return true;
   }
@@ -633,7 +639,7 @@ namespace PeriDeal
     adaptation.grading->set_time(adaptation.last_time);
     with_formulas(communicator, [&] {
       for (auto &problem : problems)
-        problem->rebuild(adaptation.last_time);
+        adaptive(*problem).rebuild(adaptation.last_time);
     });
     output->find_points(reported());
   }

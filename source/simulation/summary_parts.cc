@@ -7,7 +7,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <perideal/base/instantiate.h>
-#include <perideal/problems/places.h>
+#include <perideal/problems/check_sides.h>
 #include <perideal/problems/problem_factory.h>
 
 #include <algorithm>

@@ -5,13 +5,12 @@
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/kernel_weights.h>
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/problems/diffusion_bounds.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/expression.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
-#include <perideal/solvers/step_bounds.h>
+#include <perideal/solvers/step_tools.h>
 #include <perideal/study/model_questions.h>
 
 #include <nlohmann/json.hpp>

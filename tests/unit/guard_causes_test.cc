@@ -6,7 +6,7 @@
 #include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_generator.h>
 
-#include <perideal/problems/body_causes.h>
+#include <perideal/problems/guards.h>
 #include <perideal/scene/expression.h>
 
 #include <cmath>

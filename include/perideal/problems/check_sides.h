@@ -7,20 +7,13 @@
 
 #include <perideal/scene/scene.h>
 
+#include <nlohmann/json.hpp>
+
 #include <string>
 #include <vector>
 
 namespace PeriDeal
 {
-  /**
-   * Throws UserError where conditions on parts meet others (looked for at quadrature points of
-   * faces, for regions also at vertices) and neither can give way: two different values on two
-   * parts, a value and a load in the same direction, two loads. Of a side and its part with values
-   * the one named first holds. Collective.
-   */
-  template <int dim>
-  void check_overlaps(const Scene<dim> &scene, const dealii::Triangulation<dim> &mesh);
-
   /**
    * Throws UserError for a condition of section `Boundary conditions`, of whatever physics, on a
    * side that the mesh does not have (the message names those that it has), and for a coefficient
@@ -37,4 +30,18 @@ namespace PeriDeal
   void check_points_of_parts(const Scene<dim>                 &scene,
                              const dealii::Triangulation<dim> &mesh,
                              std::vector<std::string>         &notes);
+
+  /**
+   * Where conditions hold that are not on a side of a box, for the sketch of the report: {name:
+   * {"kind": "side" | "part of a side" |
+   * "region" | "point", "lines": [[x0, y0, x1, y1], ...] (2D), "at": [[x, y], ...], "normals":
+   * [[n_x, n_y], ...]}}. Lines are sides in straight
+   * pieces; `at` are a few places spread over it, with the outward normals of a side. In one
+   * dimension and off process 0 it is empty.
+   * Collective.
+   */
+  template <int dim>
+  nlohmann::ordered_json places_of_conditions(const Scene<dim>                 &scene,
+                                              const dealii::Triangulation<dim> &mesh,
+                                              const MPI_Comm                    communicator);
 } // namespace PeriDeal

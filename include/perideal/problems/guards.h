@@ -3,9 +3,13 @@
 
 #pragma once
 
+#include <deal.II/dofs/dof_handler.h>
+
 #include <perideal/base/diverged.h>
 #include <perideal/operators/interface/operator.h>
 #include <perideal/problems/heat_ledger.h>
+#include <perideal/solvers/motion_stepper.h>
+#include <perideal/solvers/stepper.h>
 
 #include <functional>
 #include <string>
@@ -154,4 +158,64 @@ namespace PeriDeal
     bool         was_within   = true;                 // at the last look
     double       farthest = 0., farthest_before = 0.; // from the middle, at the last two looks
   };
+
+
+  /**
+   * Looks for the node in the cells, so that it is for what is said once. The handler has to
+   * outlive this.
+   */
+  template <int dim>
+  PlaceOfNode place_of_nodes(const dealii::DoFHandler<dim> &dofs);
+
+  /**
+   * The monitor `step size`: steps that adapt have become so short that they lead nowhere. Those
+   * at the start may be as short where nothing changes yet, but grow.
+   */
+  class StepGuard
+  {
+  public:
+    /** After a step or some. Not collective, but the same on all processes. */
+    Trip look(const Stepper &stepper, const double end_time, const double t);
+
+  private:
+    double             last_step = 0.;
+    unsigned long long n_last    = 0; // steps then, rejected ones, too
+    unsigned int       n_stuck   = 0; // looks that have found no growth
+  };
+
+  /**
+   * Explicit steps above their limit for the values that there are, in sentences; empty if they are
+   * not. @p op gets the material of the values. Collective.
+   */
+  std::string cause_in_step(const Stepper &stepper,
+                            Operator      &op,
+                            const Vector  &u,
+                            const Trip    &trip);
+
+  /** The same of a motion. K becomes the tangent at u. Collective. */
+  std::string cause_in_motion(const MotionStepper &stepper, ElasticOperator &op, const Vector &u);
+
+  /** Of balances that do not hold: solutions that are too rough; empty if they are not. */
+  std::string cause_in_balance(const double solver_tolerance);
+
+  /**
+   * Nodes that hardly conduct beside others, or a K that lets values grow; empty if it does not.
+   * Collective.
+   */
+  std::string cause_in_operator(Operator &op, const PlaceOfNode &place_of, const Trip &trip);
+
+  /**
+   * A cause of runs that diverge which lies in the body: a material that differs so much between
+   * two cells side by side that solvers do not get across, or that the round-off of one is no less
+   * than what the other takes part with. One pass over the cells. Collective.
+   * @param entry    of the property, quoted, as `'Conductivity'`
+   * @param property of a point, which may report errors of formulas
+   * @param monitor  what has tripped: `solver` or `balance`
+   * @return sentences; empty where it does not hold, and for other monitors
+   */
+  template <int dim>
+  std::string cause_in_contrast(const dealii::Triangulation<dim>                        &mesh,
+                                const std::string                                       &entry,
+                                const std::function<double(const dealii::Point<dim> &)> &property,
+                                const std::string                                       &monitor);
 } // namespace PeriDeal

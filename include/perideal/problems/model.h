@@ -6,7 +6,6 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/mesh/node_search.h>
-#include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
 
 #include <memory>
@@ -15,6 +14,9 @@
 
 namespace PeriDeal
 {
+  template <int dim>
+  class Problem;
+
   /**
    * Finite elements, peridynamics or both coupled, during a run: the numbering of the mesh's nodes,
    * the nodes with their halo and neighbours, and the problems that live on them. All problems of a

@@ -3,8 +3,9 @@
 
 #pragma once
 
+#include <perideal/analysis/exact_solution.h>
 #include <perideal/problems/computable.h>
-#include <perideal/problems/model.h>
+#include <perideal/problems/problem.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -80,4 +81,8 @@ namespace PeriDeal
   /** Units and names for the summary. Not collective. */
   template <int dim>
   void describe_physics(const Scene<dim> &scene, nlohmann::ordered_json &summary);
+
+  /** The solution that a scene knows (section `Reference`), or nullptr. Throws UserError. */
+  template <int dim>
+  std::unique_ptr<ExactSolution> make_reference(const Scene<dim> &scene);
 } // namespace PeriDeal

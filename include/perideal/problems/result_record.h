@@ -89,9 +89,9 @@ namespace PeriDeal
       archive.exchange("record", text);
       if (!archive.loads())
         return;
-      state  = json::parse(text);
-      notes  = state[0].get<std::vector<std::string>>();
-      totals = state[7].get<std::string>();
+      state                 = json::parse(text);
+      notes                 = state[0].get<std::vector<std::string>>();
+      totals                = state[7].get<std::string>();
       json *const members[] = {&fields, &errors, &comparison, &comparisons, &balances, &extremes};
       for (unsigned int k = 0; k < 6; ++k)
         *members[k] = state[k + 1];

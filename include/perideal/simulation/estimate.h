@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/problems/problem_cost.h>
+#include <perideal/problems/run_context.h>
 #include <perideal/scene/scene.h>
 
 #include <mpi.h>

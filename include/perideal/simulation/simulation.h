@@ -9,7 +9,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
 #include <perideal/output/result_folder.h>
-#include <perideal/problems/model.h>
+#include <perideal/problems/problem.h>
 #include <perideal/scene/scene.h>
 
 #include <nlohmann/json_fwd.hpp>
