@@ -14,63 +14,35 @@ import time
 from campaign import COMPLETE, CRASH, GOOD, HANG, KILLED, STOPPED, TRACE, WRONG, WRONG_STATUS, Campaign, Process, run
 from campaign import shared_memory, signal_processes
 from result_folder import status_of, wrong_results
+from scene_test import scene_text
 
-FRAME = """
-set Output directory = results
-subsection Output
-  set Fields = vtu, hdf5
-  set Write every = {every}
-  set Probes = 0.5, 0.5 ; 0.9, 0.2
-  set Line = 0, 0.5 ; 1, 0.5 ; 11
-end
-subsection Time
-  set End time = {end}
-end
-"""
+FRAME = scene_text("""
+Output directory = results
+Output/Fields = vtu, hdf5
+Output/Write every = {every}
+Output/Probes = 0.5, 0.5 ; 0.9, 0.2
+Output/Line = 0, 0.5 ; 1, 0.5 ; 11
+Time/End time = {end}
+""")
 
-HEAT = """
-subsection Domain
-  set Cells = 14, 14
-end
-subsection Boundary conditions
-  set Dirichlet = left: sin(t); right: 0
-end
-subsection Cracks
-  set Segments = 0.5, 0.3 ; 0.5, 0.7
-end
-"""
+HEAT = scene_text("""
+Domain/Cells = 14, 14
+Boundary conditions/Dirichlet = left: sin(t); right: 0
+Cracks/Segments = 0.5, 0.3 ; 0.5, 0.7
+""")
 
-MOTION = """
-set Physics = elasticity
-subsection Domain
-  set Cells = 14, 14
-end
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.25
-end
-subsection Elasticity
-  set Solver = dynamics
-end
-subsection Boundary conditions
-  set Displacement = left: 0, 0
-  set Traction = right: 0.001, 0
-end
+BODY = """
+Physics = elasticity
+Domain/Cells = 14, 14
+Material/Young modulus = 1
+Material/Poisson ratio = 0.25
 """
-
-LOADING = """
-set Physics = elasticity
-subsection Domain
-  set Cells = 14, 14
-end
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.25
-end
-subsection Boundary conditions
-  set Displacement = left: 0, 0 ; right: 0.01*t, free
-end
-"""
+MOTION = scene_text(BODY + """
+Elasticity/Solver = dynamics
+Boundary conditions/Displacement = left: 0, 0
+Boundary conditions/Traction = right: 0.001, 0
+""")
+LOADING = scene_text(BODY + "Boundary conditions/Displacement = left: 0, 0 ; right: 0.01*t, free")
 
 # Name: scene, time between outputs, end, end of the run that follows.
 SCENES = {"heat": (HEAT, 0.005, 0.2, 0.01), "motion": (MOTION, 0.1, 4, 0.2), "loading": (LOADING, 0.05, 1, 0.1)}

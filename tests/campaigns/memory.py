@@ -11,89 +11,47 @@ import resource
 
 from campaign import COMPLETE, GOOD, REFUSED, WRONG, Campaign, Process, run
 from result_folder import wrong_results
+from scene_test import scene_text
 
-TINY = "set Output directory = results\nsubsection Domain\n  set Cells = 4, 4\nend\nsubsection Time\n  set Steady = true\nend\n" \
-       "subsection Boundary conditions\n  set Dirichlet = left: 0; right: 1\nend\n"
-
-BASE = "set Output directory = results\nsubsection Time\n  set Steady = true\nend\n"
-
-ELASTIC = """
-set Physics = elasticity
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.25
-end
-subsection Boundary conditions
-  set Displacement = left: {zeros}
-  set Traction = right: 0.001{more}
-end
+SCENE = """
+Output directory = results
+Time/Steady = true
 """
+HEAT = SCENE + "Boundary conditions/Dirichlet = left: 0; right: 1\n"
+ELASTIC = SCENE + """
+Physics = elasticity
+Material/Young modulus = 1
+Material/Poisson ratio = 0.25
+Boundary conditions/Displacement = left: 0, 0{zero}
+Boundary conditions/Traction = right: 0.001, 0{zero}
+"""
+BLOCK = """
+Dimension = 3
+Domain/Lower corner = 0, 0, 0
+Domain/Upper corner = 1, 1, 1
+"""
+TINY = scene_text(HEAT + "Domain/Cells = 4, 4")
 
-SCENES = {
-    "stored bonds": BASE + """
-set Models = peridynamics
-subsection Domain
-  set Cells = 250, 250
-end
-subsection Peridynamics
-  set Horizon ratio = 6
-  set Operator form = stored
-  set Boundary treatment = none
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 1
-end
+SCENES = {what: scene_text(lines) for what, lines in {
+    "stored bonds": HEAT + """
+Models = peridynamics
+Domain/Cells = 250, 250
+Peridynamics/Horizon ratio = 6
+Peridynamics/Operator form = stored
+Peridynamics/Boundary treatment = none
 """,
-    "block": BASE + """
-set Dimension = 3
-subsection Domain
-  set Lower corner = 0, 0, 0
-  set Upper corner = 1, 1, 1
-  set Cells = 40, 40, 40
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 1
-end
+    "block": HEAT + BLOCK + "Domain/Cells = 40, 40, 40",
+    "elements": HEAT + "Models = finite elements\nDomain/Cells = 600, 600",
+    "elastic plate": ELASTIC.format(zero="") + "Domain/Cells = 100, 100",
+    "elastic block": ELASTIC.format(zero=", 0") + BLOCK + "Domain/Cells = 28, 28, 28\nModels = finite elements",
+    "crack": SCENE + """
+Models = coupled
+Domain/Cells = 250, 250
+Coupling/Zone = everywhere
+Cracks/Segments = 0.3, 0.5 ; 0.7, 0.5
+Boundary conditions/Dirichlet = bottom: 0; top: 1
 """,
-    "elements": BASE + """
-set Models = finite elements
-subsection Domain
-  set Cells = 600, 600
-end
-subsection Boundary conditions
-  set Dirichlet = left: 0; right: 1
-end
-""",
-    "elastic plate": BASE + ELASTIC.format(zeros="0, 0", more=", 0") + """
-subsection Domain
-  set Cells = 100, 100
-end
-""",
-    "elastic block": BASE + ELASTIC.format(zeros="0, 0, 0", more=", 0, 0") + """
-set Dimension = 3
-set Models = finite elements
-subsection Domain
-  set Lower corner = 0, 0, 0
-  set Upper corner = 1, 1, 1
-  set Cells = 28, 28, 28
-end
-""",
-    "crack": BASE + """
-set Models = coupled
-subsection Domain
-  set Cells = 250, 250
-end
-subsection Coupling
-  set Zone = everywhere
-end
-subsection Cracks
-  set Segments = 0.3, 0.5 ; 0.7, 0.5
-end
-subsection Boundary conditions
-  set Dirichlet = bottom: 0; top: 1
-end
-""",
-}
+}.items()}
 
 
 def peak_of(process):

@@ -1,4 +1,4 @@
 SetFactory("OpenCASCADE");
 Rectangle(1) = {0, 0, 0, 1, 1};
-Mesh.MeshSizeMax = 0.5;
+Mesh.MeshSizeMin = 0.5;
 Physical Surface(1) = {1};

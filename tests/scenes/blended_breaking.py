@@ -2,14 +2,14 @@
 # Copyright (C) 2026 the PeriDeal authors
 """State-based bonds that break in the zone of a blending, against peridynamics in the whole body.
 
-    blended_breaking.py static | growing | cooled | motion | ranks | mistakes
+    blended_breaking.py static | growing | cooled | motion | mistakes
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
 """
 
 from fracture import BROKEN, DISSIPATED, history
 from following_zone import path_apart, peak
-from scene_test import Comparison, check, check_less, check_message, run_parts, run_scene
+from scene_test import Comparison, check, check_message, run_parts, run_scene
 
 MODEL, PD = "coupled", "peridynamics"
 SCENE = "prm/fracture/blended_zone.prm"
@@ -99,19 +99,6 @@ def motion():
     table.show()
 
 
-def ranks():
-    """The same on 2 and 4 processes."""
-    settings = {**COARSE, "Time/End time": "0.6", "Elasticity/Breaking": "at rest", "Coupling/Certificate": "false"}
-    alone, *others = (run_scene(SCENE, settings, ranks=n) for n in (1, 2, 4))
-    check(rows(alone, BROKEN)[-1][1] > 50, f"bonds break: {rows(alone, BROKEN)[-1][1]}")
-    for n, run in zip((2, 4), others):
-        for quantity, bound in ((BROKEN, 0), (DISSIPATED, 1e-8), (JOINING, 1e-6), ("strain energy", 1e-8)):
-            x, y = (rows(one, quantity) for one in (alone, run))
-            scale = max(abs(row[1]) for row in x)
-            check(scale > 0 and len(x) == len(y), f"{quantity} up to {scale}, {len(x)} and {len(y)} rows")
-            check_less(max(abs(p[1] - q[1]) for p, q in zip(x, y)) / scale, bound + 1e-300, f"{n} processes: {quantity}")
-
-
 def mistakes():
     """What does not go with breaking families."""
     for settings, words in (
@@ -125,4 +112,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(static, growing, cooled, motion, ranks, mistakes)
+    run_parts(static, growing, cooled, motion, mistakes)

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """J and stress intensities of peridynamics alone, and of all models with heat and weight.
 
-    bond_intensities.py plates | heat | ranks | table
+    bond_intensities.py plates | heat | table
 """
 
 import math
@@ -81,16 +81,6 @@ def heat():
     table.show()
 
 
-def ranks():
-    """The same numbers on 1, 2 and 4 processes, with and without heat."""
-    for plate in (Plate(0.2, 30), HeatedPlate(0.3)):
-        runs = {n: run_scene(SCENE, {**body(40, CENTERS, 3), **plate.entries(), "Solver/Tolerance": "1e-14"}, ranks=n) for n in (1, 2, 4)}
-        for end, values in runs[1].model(PD)["stress intensity"].items():
-            for name, value in values.items():
-                for n in (2, 4):
-                    check_close(runs[n].model(PD)["stress intensity"][end][name], value, absolute=1e-9, what=f"{name} at {end} on {n} processes")
-
-
 def table():
     """What doc/fracture.md shows: errors in %."""
     def row(name, found):
@@ -114,4 +104,4 @@ def table():
 
 
 if __name__ == "__main__":
-    run_parts(plates, heat, ranks, table=table)
+    run_parts(plates, heat, table=table)

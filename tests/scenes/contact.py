@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Faces of cracks that press on each other: at rest, in motion, on several processes; bodies and fragments that meet.
 
-    contact.py rest | torn | motion | bodies | fragments | ranks | mistakes | pieces | pieces_ranks | effort
+    contact.py rest | torn | motion | bodies | fragments | mistakes | pieces | effort
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
 """
@@ -10,7 +10,7 @@ Bounds that follow from no theory are at most 1.6 times the gap that was measure
 import math
 
 from fracture import history
-from scene_test import QUIET, Comparison, check, check_less, check_message, run_parts, run_scene, scene_text
+from scene_test import QUIET, Comparison, check, check_message, run_parts, run_scene, scene_text
 
 PRESSED, PIECES, TORN = "prm/fracture/pressed_crack.prm", "prm/fracture/struck_pieces.prm", "prm/fracture/torn_and_pressed.prm"
 BARS = "prm/fracture/colliding_bars.prm"
@@ -130,20 +130,6 @@ def fragments():
     table.show()
 
 
-def ranks():
-    """1, 2 and 4 processes."""
-    table = Comparison("Faces that touch, on several processes")
-    for name, scene, settings in (("plate", PRESSED, {"Domain/Cells": "40, 40"}), ("pieces", PIECES, {}),
-                                  ("pieces, coupled", PIECES, {"Domain/Nodes": "vertices", "Models": "coupled"}), ("bars", BARS, {})):
-        runs = {n: run_scene(scene, {**QUIET, **settings}, ranks=n) for n in (1, 2, 4)}
-        for n in (2, 4):
-            for row, other in zip(runs[1].probes, runs[n].probes):
-                size = math.hypot(row["ux"], row["uy"])
-                gap = math.hypot(row["ux"] - other["ux"], row["uy"] - other["uy"])
-                check_less(gap / size if size > 0 else gap, 1e-7, f"{name}: probe at {row['x']}, {row['y']}, t = {row['time']}, {n} processes")
-    table.show()
-
-
 def mistakes():
     """What contact cannot do is said."""
     message = run_scene(PRESSED, {"Elasticity/Contact": "perhaps"}, expect_error=True)
@@ -208,13 +194,6 @@ def pieces():
     check_message(run_scene(BLOCKS, space, expect_error=True), OVERLAP, "is 0.05 deep")
 
 
-def pieces_ranks():
-    """The same words on 2 and 4 processes."""
-    said = {n: run_scene(BLOCKS, {"Models": "peridynamics"}, ranks=n, expect_error=True).stderr for n in (1, 2, 4)}
-    for n in (2, 4):
-        check(said[1].split("overlap")[1].split(". No cells")[0] == said[n].split("overlap")[1].split(". No cells")[0], f"{n} processes:\n{said[1]}\n{said[n]}")
-
-
 def effort():
     """Rounds in which nodes begin to touch are solved roughly; what they lead to is an equilibrium."""
     table = Comparison("Iterations with contact over those without")
@@ -226,4 +205,4 @@ def effort():
 
 
 if __name__ == "__main__":
-    run_parts(rest, torn, motion, bodies, fragments, ranks, mistakes, pieces, pieces_ranks, effort)
+    run_parts(rest, torn, motion, bodies, fragments, mistakes, pieces, effort)

@@ -9,8 +9,8 @@
 
 import math
 
-from scene_test import COUPLED, FE, PD, Comparison, check, check_close, run_parts, run_scene, scene_text, write_file
-from scene_texts import PULLED_STRIP, mesh_text
+from scene_test import COUPLED, FE, PD, Comparison, check, check_close, run_parts, run_scene, scene_text
+from scene_texts import PULLED_STRIP, grid_mesh
 
 SHIFT = 1e-9
 POINTS = [(0, 0.1), (0, -0.1), (0.3, 0.07), (0.3, -0.07)]
@@ -134,13 +134,8 @@ def fracture():
 
 
 def write_mesh(x, y):
-    """A Gmsh file of rectangles between the lines x and y; sides 1 left, 2 right, 3 bottom, 4 top. Returns its path."""
-    n, m = len(x), len(y)
-    node = lambda i, j: 1 + i + n * j
-    elements = [f"1 2 {1 + k} {1 + k} {node(k * (n - 1), j)} {node(k * (n - 1), j + 1)}" for k in (0, 1) for j in range(m - 1)]
-    elements += [f"1 2 {3 + k} {3 + k} {node(i, k * (m - 1))} {node(i + 1, k * (m - 1))}" for k in (0, 1) for i in range(n - 1)]
-    elements += [f"3 2 9 9 {node(i, j)} {node(i + 1, j)} {node(i + 1, j + 1)} {node(i, j + 1)}" for j in range(m - 1) for i in range(n - 1)]
-    return write_file("rectangles.msh", mesh_text([f"{x[i]!r} {y[j]!r}" for j in range(m) for i in range(n)], elements))
+    """The file of rectangles between the lines x and y."""
+    return grid_mesh((len(x) - 1, len(y) - 1), lambda i, j: (x[i], y[j]))
 
 
 def mesh():

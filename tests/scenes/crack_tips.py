@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Cracks that run through breaking bonds: their length and area, the places and speeds of their tips, their surface in files.
 
-    crack_tips.py rest | motion | space | ranks | resume
+    crack_tips.py rest | motion | space | resume
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
 """
@@ -15,7 +15,7 @@ import re
 from fracture import DISSIPATED, ENERGY, history
 from resume import check_stopped, new_folder, tables_of
 from resume import run as run_in_folder
-from scene_test import PD, Comparison, check, check_close, check_less, run_parts, run_scene
+from scene_test import PD, Comparison, check, check_less, run_parts, run_scene
 
 LENGTH, TIP = "crack length", "crack 1 end 2"
 OF_TIP = [f"{what} at {TIP}" for what in ("tip x", "tip y", LENGTH)]
@@ -112,22 +112,6 @@ def space():
     table.show()
 
 
-def ranks():
-    """The same on 1, 2 and 4 processes, to the last digit of the tables but for the round-off of displacements."""
-    plate = {**QUIET, "Domain/Cells": "24, 48", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-12", "Time/Time step": "0.05",
-             "Material/Poisson ratio": "0.2", "Material/Fracture energy": "0.005"}
-    beside = {**plate, "Models": "coupled", "Domain/Cells": "24, 49", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}
-    for scene, model, settings in (("prm/fracture/branching_crack.prm", PD, {**BRANCHING, "Domain/Cells": "60, 24", "Time/Time step": "2e-7"}),
-                                   ("prm/fracture/centre_crack.prm", PD, plate), ("prm/fracture/centre_crack.prm", "coupled", beside)):
-        runs = [crack_rows(run_scene(scene, settings, ranks=n), model) for n in (1, 2, 4)]
-        check(len(runs[0]) > 20 and max(row[2] for row in runs[0]) > 0, f"{scene}, {model}: rows {len(runs[0])}")
-        for n, rows in zip((2, 4), runs[1:]):
-            check([row[1] for row in rows] == [row[1] for row in runs[0]], f"{scene}, {model}: rows on {n} processes")
-            # Where a load step is divided follows from displacements.
-            check_less(max(abs(a[0] - b[0]) for a, b in zip(rows, runs[0])), 1e-9, f"{scene}, {model}: times on {n} processes")
-            check_close([row[2] for row in rows], [row[2] for row in runs[0]], relative=1e-12, what=f"{scene}, {model}: cracks on {n} processes")
-
-
 def resume():
     """A run that was stopped and goes on tells the same of its cracks."""
     settings = {**BRANCHING, "Domain/Cells": "60, 24", "Time/Time step": "2e-7", "Output/Fields": "vtu"}
@@ -148,4 +132,4 @@ def resume():
 
 
 if __name__ == "__main__":
-    run_parts(rest, motion, space, ranks, resume)
+    run_parts(rest, motion, space, resume)

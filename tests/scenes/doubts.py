@@ -9,7 +9,7 @@ import math
 import re
 
 from scene_test import BC, FE, PD, check, check_close, run_parts, run_perideal, run_scene, scene_text, write_file
-from scene_texts import PULLED_STRIP, body_of_bonds, mesh_text
+from scene_texts import PULLED_STRIP, body_of_bonds, grid_mesh
 
 
 PLATE = scene_text("""
@@ -26,20 +26,12 @@ ELASTIC = {"Physics": "elasticity", "Material/Young modulus": "200", "Material/P
            BC + "Displacement": "bottom: 0, 0", BC + "Traction": "top: 0, 1", "Time/Steady": "false"}
 
 
-def quarter_ring(n=6, inner=1.0, outer=2.0):
-    """A quarter of a ring as a Gmsh file, the planes x = 0 and y = 0 and its skin named."""
-    nodes, elements = [], []
-    for j in range(2 * n + 1):
-        for i in range(n + 1):
-            r, angle = inner + (outer - inner) * i / n, 0.5 * math.pi * j / (2 * n)
-            nodes.append(f"{r * math.cos(angle):.15g} {r * math.sin(angle):.15g}")
-    at = lambda i, j: 1 + i + j * (n + 1)
-    for i in range(n):
-        elements += [f"1 2 2 2 {at(i, 0)} {at(i + 1, 0)}", f"1 2 1 1 {at(i, 2 * n)} {at(i + 1, 2 * n)}"]
-    for j in range(2 * n):
-        elements += [f"1 2 3 3 {at(i, j)} {at(i, j + 1)}" for i in (0, n)]
-        elements += [f"3 2 9 9 {at(i, j)} {at(i + 1, j)} {at(i + 1, j + 1)} {at(i, j + 1)}" for i in range(n)]
-    return mesh_text(nodes, elements, ("plane x", "plane y", "skin"))
+def quarter_ring(n=6):
+    """A quarter of the ring 1 < r < 2, the planes x = 0 and y = 0 and its skin named."""
+    def place(i, j):
+        r, angle = 1 + i / n, 0.5 * math.pi * j / (2 * n)
+        return r * math.cos(angle), r * math.sin(angle)
+    return grid_mesh((n, 2 * n), place, ((2, 1, 0), (1, 1, -1), (3, 0, 0), (3, 0, -1)), names=((1, 1, "plane x"), (1, 2, "plane y"), (1, 3, "skin")))
 
 
 def said(run, *words):
@@ -87,7 +79,7 @@ def gaps():
         status, text = check_command(PLATE, {**more, "Output/Line": "", "Output/Probes": "0.3,0.3 ; 0.52,0.48"})
         check(status == 1 and "'Probes'" in text and "(0.52, 0.48)" in text and "in a hole" in text, f"a probe in a hole: {text}")
     # Meshes from files: found before anything is computed, by `check`, too.
-    mesh = write_file("ring.msh", quarter_ring())
+    mesh = quarter_ring()
     ring = {**ELASTIC, "Domain/Holes": "", "Domain/Shape": "mesh file", "Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.5",
             BC + "Displacement": "plane x: 0, free ; plane y: free, 0", BC + "Traction": "skin: x, y", "Output/Line": "0,0 ; 1.5,1.5 ; 16"}
     run = run_scene(PLATE, ring)
@@ -122,7 +114,7 @@ def entries():
 
 def symmetry():
     """On a mesh from a file a plane of symmetry is insulated for a computed temperature: as where the same planes are held by displacements."""
-    mesh = write_file("ring.msh", quarter_ring())
+    mesh = quarter_ring()
     ring = {**ELASTIC, "Domain/Holes": "", "Domain/Shape": "mesh file", "Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.5",
             "Material/Thermal expansion": "1e-3", "Elasticity/Temperature change": "computed", BC + "Traction": "skin: x, y",
             BC + "Dirichlet": "skin: if(x^2 + y^2 < 2, 1, 0)", "Time/Steady": "true", "Output/Line": "", "Output/Probes": "1.06,1.06 ; 1.5,0"}

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Elastic bodies in the model `coupled`: cracks in plates whose exact fields (Westergaard) are prescribed on the sides.
 
-    elastic_coupling.py opening | mixed | schemes | meshes | ranks
+    elastic_coupling.py opening | mixed | schemes | meshes
 """
 
 import math
@@ -175,19 +175,5 @@ def meshes():
     table.show()
 
 
-def ranks():
-    """The same numbers on 1, 2 and 4 processes."""
-    table = Comparison("Coupled plate on several processes")
-    runs = {n: run_scene(SCENE, {**QUIET, "Domain/Cells": "41, 41"}, ranks=n) for n in (1, 2, 4)}
-    for n in (2, 4):
-        for a, b in zip(runs[1].probes, runs[n].probes):
-            for column in ("ux", "uy"):
-                table.add(f"{n} processes, {a['model']}: {column} at ({a['x']:.3g}, {a['y']:.3g})", b[column], a[column], absolute=1e-10)
-        for model in ("finite elements", "coupled"):
-            for end, entry in runs[1].model(model)["stress intensity"].items():
-                table.add(f"{n} processes, {model}: K_I at {end}", runs[n].model(model)["stress intensity"][end]["I"], entry["I"], absolute=1e-9)
-    table.show()
-
-
 if __name__ == "__main__":
-    run_parts(opening, mixed, schemes, meshes, ranks)
+    run_parts(opening, mixed, schemes, meshes)

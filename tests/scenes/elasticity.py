@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Elastic bodies at rest: prm/elasticity against closed forms, prm/papers/le_2014 against finite elements that follow the hole.
 
-    elasticity.py bars | surface | cells | constraint | plates | bore | crack | thermal | torsion | notes | ranks | le_elements | le_hole | le_full
+    elasticity.py bars | surface | cells | constraint | plates | bore | crack | thermal | torsion | notes | le_elements | le_hole | le_full
 
 Bounds that follow from no theory are about 1.5 times the gap that was measured; the comment beside them gives it.
 """
@@ -11,7 +11,7 @@ import json
 import math
 import os
 
-from scene_test import FE, PD, SOURCE_DIR, Comparison, check, check_close, check_message, fitted_order, run_parts, run_scene
+from scene_test import FE, PD, SOURCE_DIR, Comparison, check, check_message, fitted_order, run_parts, run_scene
 
 QUIET = {"Output/Fields": "none", "Solver/Tolerance": "1e-12"}
 
@@ -315,15 +315,6 @@ def notes():
     check_message(run, "Maximum iterations")
 
 
-def ranks():
-    """The same on two processes: doubled vertices, three dimensions, a mesh from a file with a plane of symmetry."""
-    for name in ("elasticity/crack_in_tension.prm", "elasticity/torsion.prm", "papers/le_2014/example_1_elements.prm"):
-        alone, two = (run_scene(f"prm/{name}", QUIET, ranks=n) for n in (1, 2))
-        for columns in (("ux", "uy"), ("sxx", "syy", "sxy", "von_mises")):
-            a, b = ([row[c] for row in run.probes for c in columns] for run in (alone, two))
-            check_close(b, a, relative=1.7e-11, what=f"{name}: {', '.join(columns)} on two processes")  # measured: 1.1e-11; solvers stop at 1e-12
-
-
 LENGTH = 100
 REFERENCE = {"ux": 2.061e-3, "von mises": 3.774}  # of example_1_elements.prm on the mesh of make_mesh.py with 32
 
@@ -382,4 +373,4 @@ def le_full():
 
 
 if __name__ == "__main__":
-    run_parts(bars, surface, cells, constraint, plates, bore, crack, thermal, torsion, notes, ranks, le_elements, le_hole, le_full)
+    run_parts(bars, surface, cells, constraint, plates, bore, crack, thermal, torsion, notes, le_elements, le_hole, le_full)

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bonds that break beside finite elements, and a zone that follows them, against bonds everywhere.
 
-    following_zone.py static | bodies | motion | heat | ranks | mistakes
+    following_zone.py static | bodies | motion | heat | mistakes
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
 """
@@ -142,15 +142,6 @@ BLOCK = {**VERTICES, "Domain/Cells": "17, 33, 2", "Peridynamics/Horizon ratio": 
          "Solver/Tolerance": "1e-12"}
 
 
-def ranks():
-    """The same on 2 and 4 processes, in two and three dimensions."""
-    for name, scene, settings in (("plate", SCENE, COARSE), ("block", "prm/fracture/cracked_block.prm", BLOCK)):
-        alone, *others = (run_scene(scene, settings, ranks=n) for n in (1, 2, 4))
-        check(rows(alone, BROKEN)[-1][1] > 50, f"{name}: bonds break: {rows(alone, BROKEN)[-1][1]}")
-        for n, run in zip((2, 4), others):
-            same(alone, run, f"{name}, {n} processes")
-
-
 def mistakes():
     """Zones in which bonds cannot break."""
     for settings, words in (
@@ -166,4 +157,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(static, bodies, motion, heat, ranks, mistakes)
+    run_parts(static, bodies, motion, heat, mistakes)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Bonds that break: strength against Griffith, energies, motion, numbers of processes.
+"""Bonds that break: strength against Griffith, energies, motion.
 
-    fracture.py plate | beside | cantilever | block | bend | mesh | motion | steps | symmetry | ranks | oblique | scatter
+    fracture.py plate | beside | cantilever | block | bend | mesh | motion | steps | symmetry | oblique | scatter
     fracture.py fine_plate | fine_block | fine_motion      the scenes on their own lattices; the others take one of half the cells a side
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
@@ -255,17 +255,6 @@ def symmetry():
         check_message(run, "'Segments' in section 'Cracks'", "'Symmetry = bottom'", "ligament: free, 0", "'Nodes = cell centers'")
 
 
-def ranks():
-    """The same on two and four processes, whichever way bonds break."""
-    for way in ("in motion", "at rest"):
-        alone, *others = (run_scene("prm/fracture/centre_crack.prm", {**COARSE, "Elasticity/Breaking": way}, ranks=n) for n in (1, 2, 4))
-        a = history(alone, BROKEN, DISSIPATED, "strain energy")
-        for n, run in zip((2, 4), others):
-            b = history(run, BROKEN, DISSIPATED, "strain energy")
-            check([row[1] for row in a] == [row[1] for row in b] and a[-1][1] > 50, f"{way}: as many bonds break on {n} processes: {[row[1] for row in b]}")
-            check_close([v for row in b for v in row[2:]], [v for row in a for v in row[2:]], relative=1e-9, what=f"{way}: energies on {n} processes")
-
-
 # Angle of the crack to the rows and the bound of what it turns by, degrees.
 OBLIQUE = ((10, 1.8), (22.5, 4.7))  # measured: 1.1 and 3.0; at 33 degrees 7.4; with `Breaking = at rest` 3.5 and 13.4
 
@@ -325,5 +314,5 @@ def scatter():
 
 
 if __name__ == "__main__":
-    run_parts(plate, beside, cantilever, block, bend, mesh, motion, steps, symmetry, ranks, oblique, scatter,
+    run_parts(plate, beside, cantilever, block, bend, mesh, motion, steps, symmetry, oblique, scatter,
               fine_plate=fine_plate, fine_block=fine_block, fine_motion=fine_motion)

@@ -2,10 +2,10 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Elastic bodies on graded meshes (`Coarsening`), beside the whole lattice: at rest, warm, in motion, with cracks that grow.
 
-    graded_bodies.py crack | loads | motion | ranks | mistakes
+    graded_bodies.py crack | loads | motion | mistakes
 """
 
-from scene_test import COUPLED, FE, QUIET, Comparison, check, check_close, check_message, run_parts, run_scene
+from scene_test import COUPLED, FE, QUIET, Comparison, check, check_message, run_parts, run_scene
 
 CRACK, STRIP, GROWING, GLASS = (f"prm/elasticity/{name}.prm" for name in ("graded_crack", "impact_on_strip", "growing_crack", "thermal_stress"))
 INTENSITY = 1.2533141373155
@@ -88,16 +88,6 @@ def motion():
     table.show()
 
 
-def ranks():
-    for scene, more, model, tolerance in ((CRACK, {}, COUPLED, 1e-9), (STRIP, WAVE, FE, 1e-12), (GROWING, {**GROWN, "Domain/Cells": "96, 16", "Cracks/Segments": "-3,-0.03125 ; -1,-0.03125", "Domain/Coarsening": "1"}, COUPLED, 1e-9)):
-        runs = [run_scene(scene, {**QUIET, **more}, ranks=n) for n in (1, 2, 4)]
-        check(len(runs[0].rows(model)) > 1, f"{scene}: probes")
-        for run in runs[1:]:
-            check_close(run.total("strain energy", model), runs[0].total("strain energy", model), relative=tolerance, what=f"{scene}: strain energy")
-            for row, expected in zip(run.rows(model), runs[0].rows(model)):
-                check_close(row["ux"] + row["uy"], expected["ux"] + expected["uy"], absolute=tolerance, what=f"{scene}: ux + uy")
-
-
 def mistakes():
     check_message(run_scene(CRACK, {"Models": "peridynamics", "Peridynamics/Surface correction": "none"}, expect_error=True), "Coarsening", "Domain", "fine cells everywhere")
     for scheme in ("blending", "splice"):
@@ -107,4 +97,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(crack, loads, motion, ranks, mistakes)
+    run_parts(crack, loads, motion, mistakes)

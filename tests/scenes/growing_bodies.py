@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Cracks with a prescribed path in elastic bodies: a strip, whose energy per length is known.
 
-    growing_bodies.py strip | mesh | motion | ranks | mistakes
+    growing_bodies.py strip | mesh | motion | mistakes
 """
 
 from scene_test import COUPLED, FE, PD, Comparison, check, check_close, check_message, run_parts, run_scene
@@ -69,18 +69,6 @@ def motion():
                     relative=0.01, what=f"{model}: what is released, with newmark")
 
 
-def ranks():
-    for more, tolerance in ((MOTION, 0), ({}, 1e-9)):
-        whole = run_scene(SCENE, {**more, "Models": PD})
-        for n in (2, 4):
-            run = run_scene(SCENE, {**more, "Models": PD}, ranks=n)
-            found, expected = (r.probe(PD, (0, 0.05), column="uy") for r in (run, whole))
-            check_close(found, expected, relative=max(tolerance, 0), what=f"uy on {n} processes")
-    for model in (FE, COUPLED):
-        whole, run = (run_scene(SCENE, {"Models": model}, ranks=n) for n in (1, 4))
-        check_close(run.total("energy dissipated", model, time=1), whole.total("energy dissipated", model, time=1), relative=1e-9, what=f"{model} on 4 processes")
-
-
 def mistakes():
     for more, words in (({"Time/Steady": "true"}, ("'Steady' in section 'Time'", "cracks that grow")),
                         ({"Models": PD, "Peridynamics/Surface correction": "energy"}, ("'Surface correction' in section 'Peridynamics'", "cracks that grow")),
@@ -89,4 +77,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(strip, mesh, motion, ranks, mistakes)
+    run_parts(strip, mesh, motion, mistakes)

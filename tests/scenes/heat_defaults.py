@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
-from scene_test import PD, Comparison, check, run_parts, run_scene, scene_text, write_file
-from scene_texts import mesh_text
+from scene_test import PD, Comparison, check, run_parts, run_scene, scene_text
+from scene_texts import grid_mesh, shaken
 
 ALL = "finite elements, peridynamics, coupled"
 
@@ -64,16 +64,7 @@ def finite_volumes(conductivity, storage, end, left=0.0, right=1.0, cells=200, s
 
 def distorted_mesh(n=16):
     """The file of a square of quadrilaterals whose inner vertices are out of place."""
-    nodes = []
-    for j in range(n + 1):
-        for i in range(n + 1):
-            inside = 0 < i < n and 0 < j < n
-            shift = 0.15 / n if inside else 0.0
-            nodes.append(f"{i / n + shift * math.sin(3 * i + 5 * j)!r} {j / n + shift * math.cos(4 * i + 2 * j)!r}")
-    at = lambda i, j: j * (n + 1) + i + 1
-    elements = [f"3 2 9 9 {at(i, j)} {at(i + 1, j)} {at(i + 1, j + 1)} {at(i, j + 1)}" for j in range(n) for i in range(n)]
-    elements += [f"1 2 1 1 {at(0, j)} {at(0, j + 1)}" for j in range(n)] + [f"1 2 2 2 {at(n, j)} {at(n, j + 1)}" for j in range(n)]
-    return write_file("square.msh", mesh_text(nodes, elements))
+    return grid_mesh((n, n), shaken(1 / n, 0.15, (n, n)))
 
 
 def flow(run, model=PD, side="right"):

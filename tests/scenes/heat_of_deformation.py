@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bodies that their own deformation warms and cools (`Heat of deformation = true`), against closed forms.
 
-    heat_of_deformation.py adiabatic | relaxing | tearing | ranks | mistakes
+    heat_of_deformation.py adiabatic | relaxing | tearing | mistakes
 """
 
 from scene_test import COUPLED, FE, PD, QUIET, Comparison, check, check_close, check_less, check_message, run_parts, run_scene, scene_text
@@ -192,22 +192,6 @@ def tearing():
 TORN = 7e-3  # measured: 4.7e-3, of the column that no bond holds any more
 
 
-def ranks():
-    """The same on 1, 2 and 4 processes."""
-    for what, scene, more in (("block", SCENE, {"Time/End time": "0.2", "Time/Time step": "0.05", "Output/Write at": "0.1", "Domain/Cells": "10, 10"}), ("space", BODY, BODIES["space"])):
-        runs = [run_scene(scene, {**QUIET, **more}, ranks=n) for n in (1, 2, 4)]
-        for other in runs[1:]:
-            for column in ("ux", "sxx", "temperature"):
-                a, b = ([row[column] for row in run.probes] for run in (runs[0], other))
-                check_close(b, a, absolute=RANKS * max(map(abs, a)), what=f"{what}: {column}")
-            for model in runs[0].summary["models"]:
-                a, b = (run.model(model)["heat balance"]["heat of deformation"] for run in (runs[0], other))
-                check_close(b, a, relative=RANKS, what=f"{what}, {model}: heat of deformation")
-
-
-RANKS = 1e-9
-
-
 def mistakes():
     """One message that names the entry."""
     name = "Heat of deformation"
@@ -229,4 +213,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(adiabatic, relaxing, tearing, ranks, mistakes)
+    run_parts(adiabatic, relaxing, tearing, mistakes)

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bodies in motion: the energy stays within 1 % of what start and loads bring in, or the run stops and says why.
 
-    motion.py kept | stopped | ranks | supplied | refused
+    motion.py kept | stopped | supplied | refused
 """
 
 from scene_test import PD, Comparison, check, check_close, check_message, run_parts, run_scene
@@ -99,20 +99,6 @@ def stopped():
     check(any("inside out" in note and "'Kinematics = linear'" in note for note in run.summary["notes"]), f"a note: {run.summary['notes']}")
 
 
-def ranks():
-    """The same on 1, 2 and 4 processes."""
-    squeezed = {**HELD, "Domain/Cells": "16, 16", "Boundary conditions/Traction": "right: -0.2 - 0.004*y, 0", "Time/End time": "20"}
-    ends = [run_scene(BODY, squeezed, ranks=n, expect_error=True).stderr for n in (1, 2, 4)]
-    check("inside out" in ends[0] and ends[0] == ends[1] == ends[2], f"the same message: {ends}")
-    pulled = {**HELD, "Domain/Cells": "16, 8", "Boundary conditions/Displacement": "left: 0, 0; right: 2.5*(t/20)^2, 0", "Time/End time": "20",
-              "Output/Write every": "5"}
-    runs = [run_scene(BODY, pulled, ranks=n) for n in (1, 2, 4)]
-    for run in runs[1:]:
-        check(run.model(PD)["steps"] == runs[0].model(PD)["steps"], "as many steps")
-        for quantity in ("kinetic energy", "strain energy", "work of loads and supports"):
-            check_close(history(run, quantity), history(runs[0], quantity), relative=1e-9, what=quantity)
-
-
 def supplied():
     """Ten times the steps of the supplied motions."""
     table = Comparison("Ten times as long")
@@ -132,4 +118,4 @@ def refused():
 
 
 if __name__ == "__main__":
-    run_parts(kept, ramps, stopped, ranks, supplied, refused)
+    run_parts(kept, ramps, stopped, supplied, refused)

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Conditions on parts of sides, regions and points: areas and totals, parts that are whole sides, meshes with names, velocities, holes, penny-shaped cracks.
 
-    parts.py loads | whole | heat | meshes | motion | holes | ranks | scenes
+    parts.py loads | whole | heat | meshes | motion | holes | scenes
 """
 
 import math
@@ -192,20 +192,6 @@ def holes():
     check_close(twice[1] / twice[0], 2, relative=1e-9, what="normal of a disc")
 
 
-def ranks():
-    """One, two and four processes."""
-    heat = {BC + "Parts": "warm: top if x > 0.47 ; spot: region x^2 + (y-0.5)^2 < 0.09 ; tip: point 0.5, 0.55", BC + "Flux": "warm: 2 ; spot: 3",
-            BC + "Dirichlet": "bottom: 0 ; tip: 1", "Models": f"{FE}, {PD}, {COUPLED}", "Coupling/Zone": "y - 0.5"}
-    solid = {**ELASTIC, BC + "Parts": "load: top if abs(x - 0.4) < 0.21 ; tip: point 0.5, 0.55", BC + "Traction": "load: 0, -1", "Models": f"{FE}, {PD}",
-             BC + "Displacement": "bottom: 0, 0 ; tip: 1e-3, free"}
-    struck = {**ELASTIC, "Elasticity/Solver": "dynamics", BC + "Displacement": "", BC + "Parts": "blow: left if y < 0.47", BC + "Velocity": "blow: sin(3*t) + y, free",
-              "Models": f"{FE}, {PD}", "Time/End time": "0.3"}
-    for what, overrides in (("heat", heat), ("elasticity", solid), ("motion", struck)):
-        one = run_scene(HEAT, overrides)
-        for n in (2, 4):
-            same(f"{what} on {n} processes", one, run_scene(HEAT, overrides, ranks=n), 1e-9)
-
-
 def intensity(run, model):
     ends = run.model(model)["stress intensity"]
     return next(iter(ends.values()))["I"]
@@ -288,4 +274,4 @@ def kalthoff(quiet):
 
 
 if __name__ == "__main__":
-    run_parts(loads, whole, heat, meshes, motion, holes, ranks, scenes)
+    run_parts(loads, whole, heat, meshes, motion, holes, scenes)

@@ -234,7 +234,7 @@ def scene_text(lines):
             text.append("  " * depth + f"subsection {section}")
         inside[:] = sections
 
-    for line in lines.strip().splitlines():
+    for line in filter(str.strip, lines.splitlines()):
         name, value = line.split("=", 1)
         *sections, entry = name.strip().split("/")
         enter(sections)

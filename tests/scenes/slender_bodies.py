@@ -8,8 +8,8 @@
 import math
 import re
 
-from scene_test import FE, PD, Comparison, check, check_close, run_parts, run_scene, write_file
-from scene_texts import body_of_bonds, mesh_text
+from scene_test import FE, PD, Comparison, check, check_close, run_parts, run_scene
+from scene_texts import BOX, body_of_bonds, grid_mesh, shaken
 
 BODY = body_of_bonds("""
 Output/Fields = none
@@ -69,25 +69,15 @@ def waves():
     table.show()
 
 
-def mapped_mesh(n, m, place, closed=False):
-    """A mesh file of n x m cells at place(i, j); sides 1 left, 2 right, 3 bottom, 4 top. closed: the right side is the left one."""
-    node = lambda i, j: 1 + (i % n if closed else i) + (n if closed else n + 1) * j
-    elements = [] if closed else [f"1 2 {1 + k} {1 + k} {node(k * n, j)} {node(k * n, j + 1)}" for k in (0, 1) for j in range(m)]
-    elements += [f"1 2 {3 + k} {3 + k} {node(i, k * m)} {node(i + 1, k * m)}" for k in (0, 1) for i in range(n)]
-    elements += [f"3 2 9 9 {node(i, j)} {node(i + 1, j)} {node(i + 1, j + 1)} {node(i, j + 1)}" for j in range(m) for i in range(n)]
-    nodes = [" ".join(repr(float(x)) for x in place(i, j)) for j in range(m + 1) for i in range(n if closed else n + 1)]
-    return write_file("mapped.msh", mesh_text(nodes, elements))
-
-
 def strip_on_mesh(thick, m, angle=0.0, moved=0.0, moves=False, more=None):
     """Stiffness of a strip along x, or speed in one at an angle; inner nodes moved by so much of a cell."""
     long = 8
+    straight = shaken(1 / thick, moved, (long * thick, thick))
     def place(i, j):
-        inner = moved / thick if 0 < i < long * thick and 0 < j < thick else 0
-        x, y = i / thick + inner * math.sin(7 * i + 3 * j), j / thick + inner * math.cos(5 * i + 11 * j)
+        x, y = straight(i, j)
         return x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)
     foot = "{!r}, {!r}".format(*place(0, thick // 2))
-    settings = {"Dimension": "2", "Domain/Shape": "mesh file", "Domain/Mesh file": mapped_mesh(long * thick, thick, place),
+    settings = {"Dimension": "2", "Domain/Shape": "mesh file", "Domain/Mesh file": grid_mesh((long * thick, thick), place),
                 "Peridynamics/Horizon": repr(m / thick), **(more or {})}
     if moves:
         along = math.cos(angle), math.sin(angle)
@@ -106,7 +96,7 @@ def ring_on_mesh(thick, m, moves=False, more=None):
     def place(i, j):
         r, angle = inner + 0.2 * j / thick, -2 * math.pi * i / around
         return r * math.cos(angle), r * math.sin(angle)
-    settings = {"Dimension": "2", "Domain/Shape": "mesh file", "Domain/Mesh file": mapped_mesh(around, thick, place, True),
+    settings = {"Dimension": "2", "Domain/Shape": "mesh file", "Domain/Mesh file": grid_mesh((around, thick), place, ((3, 1, 0), (4, 1, -1)), closed=True),
                 "Peridynamics/Horizon": repr(m * 0.2 / thick), "Output/Probes": f"{middle}, 0", **(more or {})}
     if not moves:
         run = run_scene(BODY, {**settings, "Time/Time step": "1", "Time/End time": "1", "Boundary conditions/Traction": "3: 1e-4*t*x, 1e-4*t*y",
@@ -141,10 +131,8 @@ def meshes():
 def bent_on_mesh(thick, m, moved=0.0, more=None):
     """The run and the stiffness over a beam's of a cantilever 8 long; inner nodes moved by so much of a cell."""
     long = 8
-    def place(i, j):
-        inner = moved / thick if 0 < i < long * thick and 0 < j < thick else 0
-        return i / thick + inner * math.sin(7 * i + 3 * j), j / thick + inner * math.cos(5 * i + 11 * j)
-    run = run_scene(BODY, {"Dimension": "2", "Domain/Shape": "mesh file", "Domain/Mesh file": mapped_mesh(long * thick, thick, place), "Peridynamics/Horizon": repr(m / thick),
+    place = shaken(1 / thick, moved, (long * thick, thick))
+    run = run_scene(BODY, {"Dimension": "2", "Domain/Shape": "mesh file", "Domain/Mesh file": grid_mesh((long * thick, thick), place), "Peridynamics/Horizon": repr(m / thick),
                            "Boundary conditions/Displacement": "1: 0, 0", "Boundary conditions/Traction": "2: 0, 1e-4", "Output/Probes": f"{long}, 0.5",
                            "Time/Time step": "1", "Time/End time": "1", **(more or {})})
     return run, 1e-4 * (4 * long**3 + long * 2.6 * 6 / 5) / run.probe(PD, (long, 0.5), column="uy")
@@ -154,22 +142,12 @@ def holed_plate(thick, m, models=PD, ranks=1):
     """Force of a quarter of a square plate, half edge 2, with a hole of radius 1, pulled by 1e-3; ligaments of so many cells."""
     around = 4 * thick
     def place(i, j):
-        angle = math.pi / 2 * i / around
         x, y = (2, 4 * i / around) if 2 * i <= around else (4 - 4 * i / around, 2)
         r = math.hypot(x, y)
         return tuple(c / r + (c - c / r) * j / thick for c in (x, y))
-    run = run_scene(BODY, {"Dimension": "2", "Models": models, "Domain/Shape": "mesh file", "Domain/Mesh file": plate_file(around, thick, place), "Peridynamics/Horizon": repr(m / thick),
+    run = run_scene(BODY, {"Dimension": "2", "Models": models, "Domain/Shape": "mesh file", "Domain/Mesh file": grid_mesh((around, thick), place, (*BOX[:3], (4, 1, -1, lambda i: 2 * i < around), (5, 1, -1, lambda i: 2 * i >= around)), turned=True), "Peridynamics/Horizon": repr(m / thick),
                            "Boundary conditions/Symmetry": "1, 2", "Boundary conditions/Displacement": "5: free, 1e-3*t", "Time/Time step": "1", "Time/End time": "1"}, ranks)
     return max(row["value"] for row in run.totals if row["quantity"] == "force on 5 in y")
-
-
-def plate_file(n, m, place):
-    """mapped_mesh(), turned the other way round; of side 4 the part at y = 2 is side 5."""
-    node = lambda i, j: 1 + i + (n + 1) * j
-    elements = [f"1 2 {1 + k} {1 + k} {node(k * n, j)} {node(k * n, j + 1)}" for k in (0, 1) for j in range(m)]
-    elements += [f"1 2 {3 + k} {3 + k} {node(i, j)} {node(i + 1, j)}" for k, j, r in ((0, 0, range(n)), (1, m, range(n // 2)), (2, m, range(n // 2, n))) for i in r]
-    elements += [f"3 2 9 9 {node(i, j)} {node(i, j + 1)} {node(i + 1, j + 1)} {node(i + 1, j)}" for j in range(m) for i in range(n)]
-    return write_file("plate.msh", mesh_text([" ".join(repr(float(x)) for x in place(i, j)) for j in range(m + 1) for i in range(n + 1)], elements))
 
 
 def bent_meshes():

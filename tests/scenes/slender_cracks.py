@@ -5,7 +5,7 @@
 References: quadratic elements with the crack on faces of 640 x 40 cells (flexure, K_II = 129.0; beams with a correction 130.3) and of 256 x 32 and 512 x 64 cells (double cantilever, K_I = 32.68 by J,
 whose square differs by 7e-4 between the two).
 
-    slender_cracks.py default | told | ranks
+    slender_cracks.py default | told
 """
 
 import re
@@ -92,16 +92,5 @@ def told():
     table.show()
 
 
-def ranks():
-    """Two and four processes."""
-    table = Comparison("Numbers of processes")
-    for more in ({"Models": FE},):
-        one = cantilever(15, more)
-        for n in (2, 4):
-            other = cantilever(15, more, ranks=n)
-            table.add(f"{more}: K_I on {n} processes", gap(other, FE, "I", K_CANTILEVER), gap(one, FE, "I", K_CANTILEVER), absolute=1e-8)
-    table.show()
-
-
 if __name__ == "__main__":
-    run_parts(default, told, ranks)
+    run_parts(default, told)

@@ -18,7 +18,7 @@ import struct
 import numpy as np
 
 from scene_test import BC, COUPLED, FE, PD, Comparison, check, check_close, check_message, run_parts, run_scene, scene_text, write_file
-from scene_texts import mesh_text
+from scene_texts import BOX, grid_mesh, mesh_text
 
 
 SLIT = scene_text("""
@@ -43,30 +43,7 @@ Output/Fields = none
 """)
 
 
-def lines_of(xs, ys, holds):
-    """A mesh file of rectangles between these lines; sides 1 to 4: left, right, bottom, top; 5: inside."""
-    number, nodes, cells = {}, [], []
-    for j in range(len(ys) - 1):
-        for i in range(len(xs) - 1):
-            if holds(0.5 * (xs[i] + xs[i + 1]), 0.5 * (ys[j] + ys[j + 1])):
-                cells.append([(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)])
-    for cell in cells:
-        for corner in cell:
-            if corner not in number:
-                number[corner] = len(number) + 1
-                nodes.append(f"{xs[corner[0]]!r} {ys[corner[1]]!r}")
-    edges = {}
-    for cell in cells:
-        for a, b in zip(cell, cell[1:] + cell[:1]):
-            edges.setdefault(frozenset((a, b)), []).append((a, b))
-    elements = []
-    for found in edges.values():
-        if len(found) == 1:
-            (i, j), (k, m) = found[0]
-            side = 1 if i == k == 0 else 2 if i == k == len(xs) - 1 else 3 if j == m == 0 else 4 if j == m == len(ys) - 1 else 5
-            elements.append(f"1 2 {side} {side} {number[found[0][0]]} {number[found[0][1]]}")
-    elements += [f"3 2 9 9 " + " ".join(str(number[c]) for c in cell) for cell in cells]
-    return mesh_text(nodes, elements, ("left", "right", "bottom", "top", "slot"))
+NAMES = ((1, 1, "left"), (1, 2, "right"), (1, 3, "bottom"), (1, 4, "top"))
 
 
 def force(run, model):
@@ -94,7 +71,8 @@ def voids():
     # A mesh from a file.
     side = [0.5 * k / 20 for k in range(21)]
     ys = [0.49 * k / 20 for k in range(21)] + [0.51 + 0.49 * k / 20 for k in range(21)]
-    path = write_file("part.msh", lines_of(side + [0.5 + 0.5 * k / 20 for k in range(1, 21)], ys, lambda x, y: not (x < 0.5 and 0.49 < y < 0.51)))
+    xs = side + [0.5 + 0.5 * k / 20 for k in range(1, 21)]
+    path = grid_mesh((40, 41), lambda i, j: (xs[i], ys[j]), group=lambda i, j: None if i < 20 == j else 9, names=NAMES)
     on_mesh = {"Domain/Shape": "mesh file", "Domain/Mesh file": path, "Material/Young modulus": "1000", "Material/Poisson ratio": "0.25",
                "Peridynamics/Horizon": "0.1", BC + "Displacement": "bottom: 0, 0 ; top: 0, 1e-3", "Output/Probes": "", "Models": f"{FE}, {PD}"}
     lattice = "  set Cells = 41, 41\n  set Holes = rectangle: 0, 0.49, 0.5, 0.51\n"
@@ -308,71 +286,39 @@ def meshes():
     turned = SQUARE.replace("3 1 1 0", "3 1 0 1").replace("4 0 1 0", "4 0 0 1")
     refused = run_scene(scene, {**settings, "Domain/Mesh file": write_file("part.msh", turned)}, expect_error=True)
     check("plane of x and z" in refused.stderr, f"a mesh in the plane of x and z: {refused.stderr}")
-    xs, ys = [0.25 * k for k in range(5)], [0.25 * k for k in range(5)]
-    inner = lines_of(xs, ys, lambda x, y: True)
-    inner = inner.replace("$Elements\n32\n", "$Elements\n33\n").replace("$EndElements", "33 1 2 7 7 2 3\n$EndElements")
-    run = run_scene(scene, {"Models": FE, BC + "Dirichlet": "left: 0 ; right: 1", "Domain/Mesh file": write_file("part.msh", inner)})
+    inner = grid_mesh((4, 4), lambda i, j: (i / 4, j / 4), (*BOX, (7, 0, 1, lambda j: j == 0)), names=NAMES)
+    run = run_scene(scene, {"Models": FE, BC + "Dirichlet": "left: 0 ; right: 1", "Domain/Mesh file": inner})
     check_close(run.model(FE)["boundary flux"]["right"], 1, relative=1e-9, what="a named line between two cells")
 
 
-def two_materials(path, xs, ys, at, moved=0.0, n_named=None):
+def two_materials(xs, ys, at, moved=0.0, n_named=None):
     """A mesh of the rectangle xs by ys: cells left of `at` are the group "steel", others "oak: dry", the lowest n_named (or all) lines between them
     "glue; A:B", two corners on the right one group of points, one of them also number 1 without a name. moved: of inner nodes beside the line, in parts of a cell."""
-    n, m = len(xs), len(ys)
-    number = lambda i, j: 1 + i + n * j
-    nodes = []
-    for j in range(m):
-        for i in range(n):
-            free = 0 < i < n - 1 and 0 < j < m - 1 and xs[i] != at
-            hx, hy = xs[1] - xs[0], ys[1] - ys[0]
-            nodes.append(f"{xs[i] + (moved * hx * np.sin(7 * i + 3 * j) if free else 0)!r} {ys[j] + (moved * hy * np.cos(5 * i + 11 * j) if free else 0)!r}")
-    line = lambda group, a, b: f"1 2 {group} {group} {a} {b}"
-    elements = [line(1, number(0, j), number(0, j + 1)) for j in range(m - 1)] + [line(2, number(n - 1, j), number(n - 1, j + 1)) for j in range(m - 1)]
-    elements += [line(5, number(i, j), number(i, j + 1)) for i in range(n) if xs[i] == at for j in range(n_named or m - 1)]
-    elements += [f"15 2 1 1 {number(n - 1, 0)}", f"15 2 6 6 {number(0, 0)}", f"15 2 7 7 {number(n - 1, 0)}", f"15 2 7 7 {number(n - 1, m - 1)}"]
-    for j in range(m - 1):
-        for i in range(n - 1):
-            group_of = 8 if xs[i + 1] <= at else 9
-            elements.append(f"3 2 {group_of} {group_of} " + " ".join(str(number(*c)) for c in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))))
-    names = [(1, 1, "left"), (1, 2, "right; hot"), (1, 5, "glue; A:B"), (0, 6, "pin"), (0, 7, "corners"), (2, 8, "steel"), (2, 9, "oak: dry")]
-    text = mesh_text(nodes, elements)
-    named = f"$PhysicalNames\n{len(names)}\n" + "".join(f'{d} {k} "{name}"\n' for d, k, name in names) + "$EndPhysicalNames\n"
-    return write_file(path, text.replace("$Nodes", named + "$Nodes", 1))
+    n, m, middle = len(xs) - 1, len(ys) - 1, xs.index(at)
+    def place(i, j):
+        free = moved if 0 < i < n and 0 < j < m and i != middle else 0
+        return xs[i] + free * xs[1] * np.sin(7 * i + 3 * j), ys[j] + free * ys[1] * np.cos(5 * i + 11 * j)
+    return grid_mesh((n, m), place, (*BOX[:2], (5, 0, middle, lambda j: j < (n_named or m))), lambda i, j: 8 if i < middle else 9,
+                     ((1, 1, "left"), (1, 2, "right; hot"), (1, 5, "glue; A:B"), (0, 6, "pin"), (0, 7, "corners"), (2, 8, "steel"), (2, 9, "oak: dry")),
+                     ((1, (n, 0)), (6, (0, 0)), (7, (n, 0)), (7, (n, m))))
 
 
-def bricks(path, moved=0.0):
+def bricks(moved=0.0):
     """The same in 3D: 8 x 3 x 3 cells, the left half "steel"; the plane between is "glue". moved: of inner nodes, within that plane if they are on it."""
-    n, m = 9, 4
-    number = lambda i, j, k: 1 + i + n * (j + m * k)
-    place = lambda i, j, k, d, size: size * (moved * np.sin(7 * i + 3 * j + 5 * k + 2 * d) if 0 < i < 8 and 0 < j < 3 and 0 < k < 3 and (d > 0 or i != 4) else 0)
-    nodes = [" ".join(repr(float(p + place(i, j, k, d, size))) for d, (p, size) in enumerate(((i / 8, 1 / 8), (j / 12, 1 / 12), (k / 12, 1 / 12))))
-             for k in range(m) for j in range(m) for i in range(n)]
-    square = lambda i, j, k: " ".join(str(number(i, *c)) for c in ((j, k), (j + 1, k), (j + 1, k + 1), (j, k + 1)))
-    elements = [f"3 2 {side} {side} {square(i, j, k)}" for side, i in ((1, 0), (2, n - 1), (5, 4)) for j in range(3) for k in range(3)]
-    for k in range(3):
-        for j in range(3):
-            for i in range(n - 1):
-                group = 8 if i < 4 else 9
-                corners = [(i + a, j + b, k + c) for c in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
-                elements.append(f"5 2 {group} {group} " + " ".join(str(number(*c)) for c in corners))
-    text = mesh_text([], elements).replace("$Nodes\n0\n$EndNodes", f"$Nodes\n{len(nodes)}\n" + "".join(f"{k + 1} {p}\n" for k, p in enumerate(nodes)) + "$EndNodes")
-    named = '$PhysicalNames\n4\n2 1 "left"\n2 2 "right"\n2 5 "glue"\n3 8 "steel"\n$EndPhysicalNames\n'
-    return write_file(path, text.replace("$Nodes", named + "$Nodes", 1))
+    def place(i, j, k):
+        inner = moved if 0 < i < 8 and 0 < j < 3 and 0 < k < 3 else 0
+        return [size * (p + (inner * np.sin(7 * i + 3 * j + 5 * k + 2 * d) if d > 0 or i != 4 else 0)) for d, (p, size) in enumerate(((i, 1 / 8), (j, 1 / 12), (k, 1 / 12)))]
+    return grid_mesh((8, 3, 3), place, ((1, 0, 0), (2, 0, -1), (5, 0, 4)), lambda i, j, k: 8 if i < 4 else 9,
+                     ((2, 1, "left"), (2, 2, "right"), (2, 5, "glue"), (3, 8, "steel")))
 
 
-def ring(path, n_radial, n_around):
+def ring(n):
     """A quarter of the ring 1 < r < 3 with a circle "glue" at r = 2; sides "inner", "outer", cells "core" within."""
-    radii = [1 + 2 * k / n_radial for k in range(n_radial + 1)]
-    number = lambda i, k: 1 + i + (n_radial + 1) * k
-    angle = lambda k: 0.5 * np.pi * k / n_around
-    nodes = [f"{float(r * np.cos(angle(k)))!r} {float(r * np.sin(angle(k)))!r}" for k in range(n_around + 1) for r in radii]
-    elements = [f"1 2 {side} {side} {number(i, k)} {number(i, k + 1)}" for side, i in ((1, 0), (2, n_radial), (3, n_radial // 2)) for k in range(n_around)]
-    for k in range(n_around):
-        for i in range(n_radial):
-            group = 4 if i < n_radial // 2 else 5
-            elements.append(f"3 2 {group} {group} " + " ".join(str(number(*c)) for c in ((i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1))))
-    named = '$PhysicalNames\n5\n1 1 "inner"\n1 2 "outer"\n1 3 "glue"\n2 4 "core"\n2 5 "shell"\n$EndPhysicalNames\n'
-    return write_file(path, mesh_text(nodes, elements).replace("$Nodes", named + "$Nodes", 1))
+    def place(i, k):
+        r, angle = 1 + 2 * i / n, 0.5 * np.pi * k / n
+        return r * np.cos(angle), r * np.sin(angle)
+    return grid_mesh((n, n), place, ((1, 0, 0), (2, 0, -1), (3, 0, n // 2)), lambda i, k: 4 if i < n // 2 else 5,
+                     ((1, 1, "inner"), (1, 2, "outer"), (1, 3, "glue"), (2, 4, "core"), (2, 5, "shell")))
 
 
 NAMED = scene_text("""
@@ -396,7 +342,7 @@ def interfaces():
     xs, ys = [k / 20 for k in range(21)], [k / 20 for k in range(6)]
     flow = lambda run, model, side='right; hot': abs(run.model(model)["boundary flux"][side])
     for name, moved in (("squares", 0), ("distorted cells", 0.25)):
-        on_mesh = {"Domain/Mesh file": two_materials("part.msh", xs, ys, 0.5, moved), "Peridynamics/Horizon": "0.15"}
+        on_mesh = {"Domain/Mesh file": two_materials(xs, ys, 0.5, moved), "Peridynamics/Horizon": "0.15"}
         run = run_scene(NAMED, on_mesh)
         for model in run.summary["models"]:
             table.add(f"{name}, {model}: 0.5/5 + 1/2 + 0.5/1 in series", flow(run, model) / 0.25, 1 / 1.1, relative=1e-8 if model == FE else 1e-6)
@@ -409,7 +355,7 @@ def interfaces():
         check(flow(closed, model) < 1e-9, f"{model}: nothing passes an insulated interface: {flow(closed, model)}")
         check_close(closed.probe(model, (0.9, 0.1)), 1, absolute=1e-8, what=f"{model}: behind it")
     for name, moved in (("3D", 0), ("3D, distorted", 0.1)):
-        on_mesh = {"Dimension": "3", "Domain/Mesh file": bricks("bricks.msh", moved), "Peridynamics/Horizon": "0.3", "Cracks/Interfaces": "glue",
+        on_mesh = {"Dimension": "3", "Domain/Mesh file": bricks(moved), "Peridynamics/Horizon": "0.3", "Cracks/Interfaces": "glue",
                    BC + "Dirichlet": "left: 0 ; right: 1"}
         part = run_scene(NAMED, on_mesh)
         for model in part.summary["models"]:
@@ -418,14 +364,14 @@ def interfaces():
     for model in closed.summary["models"]:
         check(flow(closed, model, "right") < 1e-9, f"3D, distorted, {model}: nothing passes an insulated interface: {flow(closed, model, 'right')}")
     exact = 0.5 * np.pi / (np.log(2) / 5 + 1 / (2 * 2) + np.log(1.5))
-    run = run_scene(NAMED, {"Domain/Mesh file": ring("ring.msh", 32, 32), "Peridynamics/Horizon": "0.25", "Cracks/Interfaces": "glue",
+    run = run_scene(NAMED, {"Domain/Mesh file": ring(32), "Peridynamics/Horizon": "0.25", "Cracks/Interfaces": "glue",
                             "Material/Phases/Regions": "metal: mesh(core)", BC + "Dirichlet": "inner: 0 ; outer: 1"})
     for model in run.summary["models"]:
         table.add(f"a circle, {model}: logarithms in series", flow(run, model, "outer"), exact, relative=2e-3 if model == FE else 0.02)
     table.show()
 
     # Solids: a part of the line, as the same faces given by a segment.
-    part = two_materials("part.msh", xs, ys, 0.5, 0.25, n_named=3)
+    part = two_materials(xs, ys, 0.5, 0.25, n_named=3)
     solid = scene_text(SOLID)
     runs = [run_scene(solid, {"Domain/Mesh file": part, "Cracks/" + entry: text, "Cracks/Mesh": mesh})
             for entry, text, mesh in (("Interfaces", '"glue; A:B"', "auto"), ("Segments", "0.5,0 ; 0.5,0.15", "faces"))]
@@ -451,7 +397,7 @@ Output/Fields = none
 def names():
     """What files give names to: points, materials, names with separators; binary files; what cannot be used, and what is not there."""
     xs, ys = [k / 8 for k in range(9)], [k / 16 for k in range(5)]
-    part = two_materials("part.msh", xs, ys, 0.5)
+    part = two_materials(xs, ys, 0.5)
     heat = {"Models": FE, "Domain/Mesh file": part, "Cracks/Interfaces": "", "Cracks/Contact conductance": ""}
     series = 0.25 / (0.5 / 5 + 0.5)
     for regions in ("metal: mesh(steel)", 'metal: mesh("steel")', "metal: mesh(8)"):
@@ -525,8 +471,8 @@ def pieces(path, blocks, parted=lambda corner, middle: 0, moved=0.0):
             if key not in number:
                 number[key] = len(number) + 1
                 inside = all(0 < index[d] < len(lines[d]) - 1 for d in range(dim)) and 0.5 not in place[:2]
-                nodes.append(" ".join(repr(float(p + (moved * (lines[d][1] - lines[d][0]) * np.sin(7 * index[0] + 3 * index[1] + 5 * index[-1] + d) if inside else 0)))
-                                      for d, p in enumerate(place)))
+                nodes.append([p + (moved * (lines[d][1] - lines[d][0]) * np.sin(7 * index[0] + 3 * index[1] + 5 * index[-1] + d) if inside else 0)
+                              for d, p in enumerate(place)])
             return number[key]
         for first in np.ndindex(*[len(line) - 1 for line in lines]):
             middle = [0.5 * (lines[d][first[d]] + lines[d][first[d] + 1]) for d in range(dim)]
@@ -540,8 +486,7 @@ def pieces(path, blocks, parted=lambda corner, middle: 0, moved=0.0):
                         sides.append((2 * d + end + 1, " ".join(str(corners[c]) for c in face)))
     kind = (1, 3) if dim == 2 else (3, 5)
     elements = [f"{kind[0]} 2 {side} {side} {face}" for side, face in sides] + [f"{kind[1]} 2 9 9 {cell}" for cell in cells]
-    text = mesh_text(nodes, elements)
-    return write_file(path, text if dim == 2 else text.replace(" 0\n", "\n"))
+    return write_file(path, mesh_text(nodes, elements))
 
 
 TOUCHING = {"Domain/Shape": "mesh file", "Peridynamics/Horizon": "0.21", "Coupling/Zone": "everywhere"}

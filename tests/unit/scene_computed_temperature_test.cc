@@ -4,7 +4,7 @@
 // Elastic scenes whose temperature is computed: the heat problem in them, and what is said about
 // mistakes.
 
-#include "elastic_scene_tools.h"
+#include "scene_tables.h"
 
 namespace PeriDeal
 {
@@ -74,38 +74,25 @@ namespace PeriDeal
       EXPECT_TRUE(scene.warms_slowly());
       EXPECT_EQ(scene.output.write_times.size(), 3);
     }
-    expect(elastic_fault(with({"Time/Steady=true", b + "Dirichlet=", b + "Convection="})),
-           "Time/Steady",
-           {"without a side in 'Dirichlet' or 'Convection'"});
-    expect(elastic_fault(with({"Time/Steady=true", b + "Dirichlet=right: t"})),
-           b + "Dirichlet",
-           {"depends on t"});
-    expect(elastic_fault(with({m + "Conductivity=0"})), m + "Conductivity", {"greater than 0"});
-    expect(elastic_fault(with({b + "Flux=right: 1"})), b + "Flux", {"'Dirichlet'", "contradicts"});
-    expect(elastic_fault(with({e + "Solver=dynamics"})),
-           e + "Temperature change",
-           {"bodies at rest", "'dynamics'"});
-    expect(elastic_fault(with({"Domain/Extra layers=3"})),
-           "Domain/Extra layers",
-           {"'Temperature change = computed'"});
-    expect(elastic_fault(with({"Time/Stepper=verlet"})), "Time/Stepper", {"is for motion"});
-    expect(elastic_fault(with({m + "Thermal expansion=0"})),
-           e + "Temperature change",
-           {"'Thermal expansion' in section 'Material' is 0"});
-    const std::string or_computed = "'Temperature change = computed' in section 'Elasticity'";
-    for (const std::string given : {"Dirichlet=left: 0", "Flux=left: 0.1", "Convection=left: 1, 2"})
-      expect(elastic_fault({b + given}), b + given.substr(0, given.find('=')), {or_computed});
-    for (const std::string given : {"Initial value=1", "Source=1"})
-      expect(elastic_fault({"Initial and source/" + given}),
-             "Initial and source/" + given.substr(0, given.find('=')),
-             {or_computed});
-    expect(elastic_fault({"Time/Stepper=sdirk2"}),
-           "Time/Stepper",
-           {"'Temperature change = computed'"});
-    expect(elastic_fault({e + "Reference temperature=20"}),
-           e + "Reference temperature",
-           {"'Temperature change' is '0'"});
-    expect(elastic_fault({e + "Temperature change=computd", m + "Thermal expansion=1"}),
-           e + "Temperature change");
+    expect_elastic_faults(warm, R"(
+Time/Steady=true & Boundary conditions/Dirichlet= & Boundary conditions/Convection= => Time/Steady | without a side in 'Dirichlet' or 'Convection'
+Time/Steady=true & Boundary conditions/Dirichlet=right: t => Boundary conditions/Dirichlet | depends on t
+Material/Conductivity=0 => Material/Conductivity | greater than 0
+Boundary conditions/Flux=right: 1 => Boundary conditions/Flux | 'Dirichlet' | contradicts
+Elasticity/Solver=dynamics => Elasticity/Temperature change | bodies at rest | 'dynamics'
+Domain/Extra layers=3 => Domain/Extra layers | 'Temperature change = computed'
+Time/Stepper=verlet => Time/Stepper | is for motion
+Material/Thermal expansion=0 => Elasticity/Temperature change | 'Thermal expansion' in section 'Material' is 0
+)");
+    expect_elastic_faults({}, R"(
+Boundary conditions/Dirichlet=left: 0 => Boundary conditions/Dirichlet | 'Temperature change = computed' in section 'Elasticity'
+Boundary conditions/Flux=left: 0.1 => Boundary conditions/Flux | 'Temperature change = computed' in section 'Elasticity'
+Boundary conditions/Convection=left: 1, 2 => Boundary conditions/Convection | 'Temperature change = computed' in section 'Elasticity'
+Initial and source/Initial value=1 => Initial and source/Initial value | 'Temperature change = computed' in section 'Elasticity'
+Initial and source/Source=1 => Initial and source/Source | 'Temperature change = computed' in section 'Elasticity'
+Time/Stepper=sdirk2 => Time/Stepper | 'Temperature change = computed'
+Elasticity/Reference temperature=20 => Elasticity/Reference temperature | 'Temperature change' is '0'
+Elasticity/Temperature change=computd & Material/Thermal expansion=1 => Elasticity/Temperature change
+)");
   }
 } // namespace PeriDeal

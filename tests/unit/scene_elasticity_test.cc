@@ -4,7 +4,7 @@
 // Scenes of elasticity: what their entries give, and what is said about mistakes.
 #include <perideal/scene/rigid_motions.h>
 
-#include "elastic_scene_tools.h"
+#include "scene_tables.h"
 
 namespace PeriDeal
 {
@@ -144,39 +144,30 @@ end
 
   TEST(ElasticScenes, moduli_errors)
   {
-    const Overrides none = {m + "Young modulus=", m + "Poisson ratio="};
-    expect(elastic_fault(none), m + "Young modulus", {"is empty", "exactly two"});
-    expect(elastic_fault({m + "Poisson ratio="}),
-           m + "Young modulus",
-           {"a.prm:", "is the only one"});
-    expect(elastic_fault<1>({m + "Young modulus="}),
-           m + "Poisson ratio",
-           {"'Young modulus' alone"});
-    expect(elastic_fault({m + "Bulk modulus=100"}),
-           m + "Poisson ratio",
-           {"one of 3", "exactly two"});
-    expect(elastic_fault({m + "Young modulus=-200"}), m + "Young modulus", {"greater than 0"});
-    expect(elastic_fault({m + "Young modulus=1 + t"}), m + "Young modulus", {"depends on t"});
-    expect(elastic_fault({m + "Young modulus=1 + T"}), m + "Young modulus", {"depends on T"});
-    expect(elastic_fault({m + "Density=1 + T"}), m + "Density", {"no unknown", "elasticity"});
-    expect(elastic_fault({m + "Poisson ratio=0.51"}), m + "Poisson ratio", {"0.51", "at most 0.5"});
-    expect(elastic_fault({m + "Poisson ratio=-1"}), m + "Poisson ratio", {"greater than -1"});
-    expect(elastic_fault({m + "Poisson ratio=0.5", e + "Plane=strain"}),
-           m + "Poisson ratio",
-           {"less than 0.5"});
-    expect(elastic_fault<3>({m + "Poisson ratio=0.5"}), m + "Poisson ratio", {"less than 0.5"});
-    EXPECT_EQ(elastic_fault({m + "Poisson ratio=0.5"}), "");
-    EXPECT_EQ(elastic_fault<1>({m + "Poisson ratio=0.5"}), "");
-    expect(elastic_fault({m + "Young modulus=", m + "Bulk modulus=1", m + "Poisson ratio=0.5"}),
-           m + "Poisson ratio",
-           {"no shear modulus"});
-    // E < 9 K and E <= 3 G
-    expect(elastic_fault({m + "Poisson ratio=", m + "Bulk modulus=20"}),
-           m + "Young modulus",
-           {"contradict", "Poisson ratio would be -1.16666666667"});
-    expect(elastic_fault({m + "Poisson ratio=", m + "Shear modulus=50"}),
-           m + "Young modulus",
-           {"would be 1, "});
+    expect_elastic_faults({}, R"(
+Material/Young modulus= & Material/Poisson ratio= => Material/Young modulus | is empty | exactly two
+Material/Poisson ratio= => Material/Young modulus | a.prm: | is the only one
+Material/Bulk modulus=100 => Material/Poisson ratio | one of 3 | exactly two
+Material/Young modulus=-200 => Material/Young modulus | greater than 0
+Material/Young modulus=1 + t => Material/Young modulus | depends on t
+Material/Young modulus=1 + T => Material/Young modulus | depends on T
+Material/Density=1 + T => Material/Density | no unknown | elasticity
+Material/Poisson ratio=0.51 => Material/Poisson ratio | 0.51 | at most 0.5
+Material/Poisson ratio=-1 => Material/Poisson ratio | greater than -1
+Material/Poisson ratio=0.5 & Elasticity/Plane=strain => Material/Poisson ratio | less than 0.5
+Material/Poisson ratio=0.5 =>
+Material/Young modulus= & Material/Bulk modulus=1 & Material/Poisson ratio=0.5 => Material/Poisson ratio | no shear modulus
+# E < 9 K and E <= 3 G
+Material/Poisson ratio= & Material/Bulk modulus=20 => Material/Young modulus | contradict | Poisson ratio would be -1.16666666667
+Material/Poisson ratio= & Material/Shear modulus=50 => Material/Young modulus | would be 1, 
+)");
+    expect_elastic_faults<1>({}, R"(
+Material/Young modulus= => Material/Poisson ratio | 'Young modulus' alone
+Material/Poisson ratio=0.5 =>
+)");
+    expect_elastic_faults<3>(
+      {},
+      "Material/Poisson ratio=0.5 => Material/Poisson ratio | less than 0.5");
   }
 
 
@@ -202,24 +193,15 @@ end
 
   TEST(ElasticScenes, phase_errors)
   {
-    const std::string regions = p + "Regions=rim: x > 0.9";
-    EXPECT_EQ(elastic_fault({regions, p + "Young modulus=rim: 2"}), "");
-    expect(elastic_fault({regions, p + "Conductivity=rim: 2"}),
-           p + "Regions",
-           {"'rim' has no material", "Young modulus"});
-    expect(elastic_fault({regions, p + "Bulk modulus=rim: 2"}),
-           p + "Bulk modulus",
-           {"'Young modulus', 'Poisson ratio'", "same moduli"});
-    expect(elastic_fault({regions, p + "Poisson ratio=rim: 0.7"}),
-           p + "Poisson ratio",
-           {"phase 'rim'", "0.7"});
-    expect(elastic_fault({regions, p + "Young modulus=rim: 0"}),
-           p + "Young modulus",
-           {"phase 'rim'", "greater than 0"});
-    expect(elastic_fault({regions, p + "Fracture energy=rim: 2"}),
-           m + "Fracture energy",
-           {"is empty", "rest of the body"});
-    EXPECT_EQ(elastic_fault({regions, p + "Thermal expansion=rim: -1e-5"}), "");
+    expect_elastic_faults({p + "Regions=rim: x > 0.9"}, R"(
+Material/Phases/Young modulus=rim: 2 =>
+Material/Phases/Conductivity=rim: 2 => Material/Phases/Regions | 'rim' has no material | Young modulus
+Material/Phases/Bulk modulus=rim: 2 => Material/Phases/Bulk modulus | 'Young modulus', 'Poisson ratio' | same moduli
+Material/Phases/Poisson ratio=rim: 0.7 => Material/Phases/Poisson ratio | phase 'rim' | 0.7
+Material/Phases/Young modulus=rim: 0 => Material/Phases/Young modulus | phase 'rim' | greater than 0
+Material/Phases/Fracture energy=rim: 2 => Material/Fracture energy | is empty | rest of the body
+Material/Phases/Thermal expansion=rim: -1e-5 =>
+)");
     // under heat, the elastic properties of a phase are not its material
     expect(fault("subsection Material\nsubsection Phases\nset Regions = rim: x > 0.9\n"
                  "set Young modulus = rim: 2\nend\nend\n"),
@@ -230,271 +212,222 @@ end
 
   TEST(ElasticScenes, strength_and_temperature_errors)
   {
-    expect(elastic_fault({m + "Fracture energy=10", m + "Critical stretch=1e-3"}),
-           m + "Critical stretch",
-           {"'Fracture energy' is given"});
-    expect(elastic_fault({m + "Fracture energy=0"}), m + "Fracture energy", {"greater than 0"});
-    expect(elastic_fault({m + "Critical stretch=t"}), m + "Critical stretch", {"depends on t"});
-    expect(elastic_fault({e + "Temperature change=10"}),
-           e + "Temperature change",
-           {"no effect", "'Thermal expansion' in section 'Material' is 0"});
-    expect(elastic_fault({e + "Temperature change=t", m + "Thermal expansion=1"}),
-           e + "Temperature change",
-           {"depends on t"});
-    EXPECT_EQ(elastic_fault({e + "Temperature change=x", m + "Thermal expansion=1e-5"}), "");
+    expect_elastic_faults({}, R"(
+Material/Fracture energy=10 & Material/Critical stretch=1e-3 => Material/Critical stretch | 'Fracture energy' is given
+Material/Fracture energy=0 => Material/Fracture energy | greater than 0
+Material/Critical stretch=t => Material/Critical stretch | depends on t
+Elasticity/Temperature change=10 => Elasticity/Temperature change | no effect | 'Thermal expansion' in section 'Material' is 0
+Elasticity/Temperature change=t & Material/Thermal expansion=1 => Elasticity/Temperature change | depends on t
+Elasticity/Temperature change=x & Material/Thermal expansion=1e-5 =>
+)");
   }
 
 
   TEST(ElasticScenes, displacement_errors)
   {
-    const std::string d = b + "Displacement";
-    expect(elastic_fault({d + "=lefd: 0, 0"}), d, {"unknown side 'lefd'", "Did you mean 'left'?"});
-    expect(elastic_fault({d + "=left: 0"}), d, {"side 'left'", "needs 2 components"});
-    expect(elastic_fault({d + "=left: 0, 0, 0"}), d, {"needs 2 components"});
-    expect(elastic_fault<1>({d + "=left: 0, 0"}), d, {"needs 1 component,"});
-    expect(elastic_fault({d + "=left: 0, 0; left: 0, free"}), d, {"'left' is named twice"});
-    expect(elastic_fault({d + "=left: 0, 0; right: free, free"}),
-           d,
-           {"side 'right'", "empty grip"});
-    expect(elastic_fault<1>({d + "=left: free"}), d, {"side 'left'", "empty grip"});
-    expect(elastic_fault({d + "=left: 0, 2*yy"}), d, {"component in y", "column 3"});
-    expect(elastic_fault({d + "=left: 0, fre"}), d, {"component in y", "'fre'"});
-    expect(elastic_fault({b + "Symmetry=left"}), d, {"'left'", "'Symmetry'", "one of the two"});
-    for (const char *solver : {"linear", "dynamics"})
-      EXPECT_EQ(elastic_fault({d + "=left: 0, t", e + "Solver=" + solver}), "");
-    expect(elastic_fault({d + "=left: 0, t", "Time/Steady=true"}),
-           "Time/Steady",
-           {"is true", "depend on t"});
+    expect_elastic_faults({}, R"(
+Boundary conditions/Displacement=lefd: 0, 0 => Boundary conditions/Displacement | unknown side 'lefd' | Did you mean 'left'?
+Boundary conditions/Displacement=left: 0 => Boundary conditions/Displacement | side 'left' | needs 2 components
+Boundary conditions/Displacement=left: 0, 0, 0 => Boundary conditions/Displacement | needs 2 components
+Boundary conditions/Displacement=left: 0, 0; left: 0, free => Boundary conditions/Displacement | 'left' is named twice
+Boundary conditions/Displacement=left: 0, 0; right: free, free => Boundary conditions/Displacement | side 'right' | empty grip
+Boundary conditions/Displacement=left: 0, 2*yy => Boundary conditions/Displacement | component in y | column 3
+Boundary conditions/Displacement=left: 0, fre => Boundary conditions/Displacement | component in y | 'fre'
+Boundary conditions/Symmetry=left => Boundary conditions/Displacement | 'left' | 'Symmetry' | one of the two
+Boundary conditions/Displacement=left: 0, t & Elasticity/Solver=linear =>
+Boundary conditions/Displacement=left: 0, t & Elasticity/Solver=dynamics =>
+Boundary conditions/Displacement=left: 0, t & Time/Steady=true => Time/Steady | is true | depend on t
+)");
+    expect_elastic_faults<1>({}, R"(
+Boundary conditions/Displacement=left: 0, 0 => Boundary conditions/Displacement | needs 1 component,
+Boundary conditions/Displacement=left: free => Boundary conditions/Displacement | side 'left' | empty grip
+)");
   }
 
 
   TEST(ElasticScenes, traction_errors)
   {
-    const std::string t = b + "Traction";
-    expect(elastic_fault({t + "=right: free, 1"}), t, {"side 'right'", "'free'", "give 0"});
-    expect(elastic_fault({t + "=right: 1"}), t, {"needs 2 components"});
-    expect(elastic_fault({t + "=left: 0, 1"}), t, {"'left'", "displacement in y", "contradicts"});
-    EXPECT_EQ(elastic_fault({t + "=left: 0, 0"}), "");
-    EXPECT_EQ(elastic_fault({b + "Displacement=left: 0, 0; right: 1, free", t + "=right: 0, x"}),
-              "");
-    expect(elastic_fault({b + "Symmetry=top", t + "=top: 0, 1"}), t, {"'top'", "'Symmetry'"});
-    EXPECT_EQ(elastic_fault({b + "Symmetry=top", t + "=top: 0, 0"}), "");
-    EXPECT_EQ(elastic_fault({t + "=right: t, 0"}), ""); // slowly
-    expect(elastic_fault({t + " layer=0.1"}), t + " layer", {"no effect"});
-    expect(elastic_fault({t + "=right: 1, 0", t + " layer=0"}), t + " layer", {"greater than 0"});
-    expect(elastic_fault({t + "=right: 1, 0", t + " layer=wide"}), t + " layer", {"not a number"});
-    expect(elastic_fault({t + "=right: 1, 0", t + " layer=2"}),
-           t + " layer",
-           {"wider than the body"});
+    expect_elastic_faults({}, R"(
+Boundary conditions/Traction=right: free, 1 => Boundary conditions/Traction | side 'right' | 'free' | give 0
+Boundary conditions/Traction=right: 1 => Boundary conditions/Traction | needs 2 components
+Boundary conditions/Traction=left: 0, 1 => Boundary conditions/Traction | 'left' | displacement in y | contradicts
+Boundary conditions/Traction=left: 0, 0 =>
+Boundary conditions/Displacement=left: 0, 0; right: 1, free & Boundary conditions/Traction=right: 0, x =>
+Boundary conditions/Symmetry=top & Boundary conditions/Traction=top: 0, 1 => Boundary conditions/Traction | 'top' | 'Symmetry'
+Boundary conditions/Symmetry=top & Boundary conditions/Traction=top: 0, 0 =>
+# slowly
+Boundary conditions/Traction=right: t, 0 =>
+Boundary conditions/Traction layer=0.1 => Boundary conditions/Traction layer | no effect
+Boundary conditions/Traction=right: 1, 0 & Boundary conditions/Traction layer=0 => Boundary conditions/Traction layer | greater than 0
+Boundary conditions/Traction=right: 1, 0 & Boundary conditions/Traction layer=wide => Boundary conditions/Traction layer | not a number
+Boundary conditions/Traction=right: 1, 0 & Boundary conditions/Traction layer=2 => Boundary conditions/Traction layer | wider than the body
+)");
   }
 
 
   TEST(ElasticScenes, entries_of_another_physics)
   {
-    const std::string i = "Initial and source/";
-    expect(elastic_fault({b + "Dirichlet=top: 1"}), b + "Dirichlet", {"Use 'Displacement'"});
-    expect(elastic_fault({b + "Flux=top: 1"}), b + "Flux", {"Use 'Traction'"});
-    expect(elastic_fault({b + "Convection=top: 1, 2"}), b + "Convection", {"'elasticity'"});
-    expect(elastic_fault({i + "Source=1"}), i + "Source", {"use 'Body force'"});
-    expect(elastic_fault({i + "Initial value=1"}), i + "Initial value", {"at rest"});
-    expect(elastic_fault({i + "Body force=1"}), i + "Body force", {"needs 2 components"});
-    expect(elastic_fault({i + "Body force=1, free"}), i + "Body force", {"'free'"});
-    EXPECT_EQ(elastic_fault({i + "Body force=1, t"}), "");
+    expect_elastic_faults({}, R"(
+Boundary conditions/Dirichlet=top: 1 => Boundary conditions/Dirichlet | Use 'Displacement'
+Boundary conditions/Flux=top: 1 => Boundary conditions/Flux | Use 'Traction'
+Boundary conditions/Convection=top: 1, 2 => Boundary conditions/Convection | 'elasticity'
+Initial and source/Source=1 => Initial and source/Source | use 'Body force'
+Initial and source/Initial value=1 => Initial and source/Initial value | at rest
+Initial and source/Body force=1 => Initial and source/Body force | needs 2 components
+Initial and source/Body force=1, free => Initial and source/Body force | 'free'
+Initial and source/Body force=1, t =>
+)");
 
-    const Overrides heat   = {"Physics=heat", b + "Displacement="};
-    const auto      heated = [&](const std::string &given) {
-      Overrides overrides = heat;
-      overrides.push_back(given);
-      return elastic_fault(overrides);
-    };
-    EXPECT_EQ(elastic_fault(heat), ""); // properties of the material are read and not used
-    expect(heated(m + "Bulk modulus=-1"), m + "Bulk modulus", {"greater than 0"});
-    expect(heated(b + "Displacement=left: 0, 0"), b + "Displacement", {"'heat'", "'Dirichlet'"});
-    expect(heated(b + "Traction=left: 0, 0"), b + "Traction", {"'heat'", "'Flux'"});
-    expect(heated(b + "Traction layer=1"), b + "Traction layer", {"'heat'"});
-    expect(heated(i + "Body force=1, 0"), i + "Body force", {"'heat'"});
-    expect(heated(e + "Solver=dynamics"), e + "Solver", {"'heat'"});
+    expect_elastic_faults({"Physics=heat", b + "Displacement="}, R"(
+ =>
+# properties of the material are read and not used
+Material/Bulk modulus=-1 => Material/Bulk modulus | greater than 0
+Boundary conditions/Displacement=left: 0, 0 => Boundary conditions/Displacement | 'heat' | 'Dirichlet'
+Boundary conditions/Traction=left: 0, 0 => Boundary conditions/Traction | 'heat' | 'Flux'
+Boundary conditions/Traction layer=1 => Boundary conditions/Traction layer | 'heat'
+Initial and source/Body force=1, 0 => Initial and source/Body force | 'heat'
+Elasticity/Solver=dynamics => Elasticity/Solver | 'heat'
+)");
   }
 
 
   TEST(ElasticScenes, rigid_motions)
   {
-    const std::string d    = b + "Displacement";
-    const auto        held = [&](const std::string &grips, const std::string &symmetry = "") {
-      return elastic_fault({d + "=" + grips, b + "Symmetry=" + symmetry});
-    };
-    expect(held(""), d, {"against: translation in x, translation in y, rotation about z."});
-    expect(held("left: 0, free"), d, {"against: translation in y."});
-    expect(held("left: free, 0"), d, {"against: translation in x, rotation about z."});
-    expect(held("left: free, 0; right: free, 1"), d, {"against: translation in x."});
-    expect(held("bottom: 0, free"), d, {"against: translation in y, rotation about z."});
-    EXPECT_EQ(held("left: 0, free; bottom: free, 0"), "");
-    EXPECT_EQ(held("", "left, bottom"), "");
-    EXPECT_EQ(held("right: free, 0", "left"), "");
-    // each alone leaves a rotation, about a point of the left and of the bottom side
-    expect(held("left: free, 0; bottom: 0, free"), d, {"against: rotation about z."});
-    expect(elastic_fault<1>({d + "="}), d, {"against: translation in x."});
-
-    const auto held_in_space = [&](const std::string &grips, const std::string &symmetry = "") {
-      return elastic_fault<3>({d + "=" + grips, b + "Symmetry=" + symmetry});
-    };
-    expect(held_in_space("left: 0, free, free"),
-           d,
-           {"against: translation in y, translation in z, rotation about x."});
-    expect(held_in_space("left: free, 0, 0"),
-           d,
-           {"against: translation in x, rotation about y, rotation about z."});
-    expect(held_in_space("", "left, bottom"), d, {"against: translation in z."});
-    EXPECT_EQ(held_in_space("", "left, bottom, back"), "");
-    EXPECT_EQ(held_in_space("front: 0, 0, 0"), "");
-
-    // a hole holds both, and a body that moves need not be held
-    EXPECT_EQ(elastic_fault({"Domain/Shape=plate with hole", d + "=hole: 0, 0"}), "");
-    expect(elastic_fault({"Domain/Shape=plate with hole", d + "=hole: 0, free"}),
-           d,
-           {"against: translation in y."});
-    EXPECT_EQ(elastic_fault({d + "=", e + "Solver=dynamics"}), "");
-
+    expect_elastic_faults({}, R"(
+Boundary conditions/Displacement= => Boundary conditions/Displacement | against: translation in x, translation in y, rotation about z.
+Boundary conditions/Displacement=left: 0, free => Boundary conditions/Displacement | against: translation in y.
+Boundary conditions/Displacement=left: free, 0 => Boundary conditions/Displacement | against: translation in x, rotation about z.
+Boundary conditions/Displacement=left: free, 0; right: free, 1 => Boundary conditions/Displacement | against: translation in x.
+Boundary conditions/Displacement=bottom: 0, free => Boundary conditions/Displacement | against: translation in y, rotation about z.
+Boundary conditions/Displacement=left: 0, free; bottom: free, 0 =>
+Boundary conditions/Displacement= & Boundary conditions/Symmetry=left, bottom =>
+Boundary conditions/Displacement=right: free, 0 & Boundary conditions/Symmetry=left =>
+# each alone leaves a rotation, about a point of the left and of the bottom side
+Boundary conditions/Displacement=left: free, 0; bottom: 0, free => Boundary conditions/Displacement | against: rotation about z.
+# a hole holds both, and a body that moves need not be held
+Domain/Shape=plate with hole & Boundary conditions/Displacement=hole: 0, 0 =>
+Domain/Shape=plate with hole & Boundary conditions/Displacement=hole: 0, free => Boundary conditions/Displacement | against: translation in y.
+Boundary conditions/Displacement= & Elasticity/Solver=dynamics =>
+)");
+    expect_elastic_faults<1>(
+      {},
+      "Boundary conditions/Displacement= => Boundary conditions/Displacement | against: translation in x.");
+    expect_elastic_faults<3>({}, R"(
+Boundary conditions/Displacement=left: 0, free, free => Boundary conditions/Displacement | against: translation in y, translation in z, rotation about x.
+Boundary conditions/Displacement=left: free, 0, 0 => Boundary conditions/Displacement | against: translation in x, rotation about y, rotation about z.
+Boundary conditions/Displacement= & Boundary conditions/Symmetry=left, bottom => Boundary conditions/Displacement | against: translation in z.
+Boundary conditions/Displacement= & Boundary conditions/Symmetry=left, bottom, back =>
+Boundary conditions/Displacement=front: 0, 0, 0 =>
+)");
     // sides of a mesh file lie anywhere
-    const Overrides mesh    = {"Domain/Shape=mesh file",
-                               "Domain/Mesh file=" PERIDEAL_SOURCE_DIR "/tests/data/quads.msh",
-                               "Peridynamics/Horizon=0.1"};
-    const auto      on_mesh = [&](const std::string &grips, const std::string &symmetry = "") {
-      Overrides overrides = mesh;
-      overrides.push_back(d + "=" + grips);
-      overrides.push_back(b + "Symmetry=" + symmetry);
-      return elastic_fault(overrides);
-    };
-    expect(on_mesh("1: 0, free; 2: 1, free"), d, {"against: translation in y."});
-    EXPECT_EQ(on_mesh("1: 0, free; 2: free, 1"), "");
-    EXPECT_EQ(on_mesh("1: 0, free", "2"), "");
+    expect_elastic_faults({"Domain/Shape=mesh file",
+                           "Domain/Mesh file=" PERIDEAL_SOURCE_DIR "/tests/data/two_materials.msh",
+                           "Peridynamics/Horizon=0.3"},
+                          R"(
+Boundary conditions/Displacement=1: 0, free; 2: 1, free => Boundary conditions/Displacement | against: translation in y.
+Boundary conditions/Displacement=1: 0, free; 2: free, 1 =>
+Boundary conditions/Displacement=1: 0, free & Boundary conditions/Symmetry=2 =>
+)");
   }
 
 
   TEST(ElasticScenes, contradicting_choices)
   {
-    const std::string pd = "Peridynamics/", t = "Time/";
-    expect(elastic_fault({e + "Model=bond base"}), e + "Model", {"Did you mean 'bond-based'?"});
-    expect(elastic_fault({e + "Solver=conjugate gradient"}),
-           e + "Solver",
-           {"Did you mean 'conjugate gradients'?"});
-    expect(elastic_fault<1>({e + "Plane=strain"}), e + "Plane", {"a bar"});
-    expect(elastic_fault<3>({e + "Plane=strain"}), e + "Plane", {"'Dimension' is 3"});
-    expect(elastic_fault({e + "Kinematics=full"}), e + "Kinematics", {"'conjugate gradients'"});
-    const Overrides full{"Models=peridynamics", e + "Kinematics=full", e + "Solver=dynamics"};
-    EXPECT_EQ(elastic_fault(full), "");
-    expect(elastic_fault({full[1], full[2]}), e + "Kinematics", {"small displacements"});
-    expect(elastic_fault({t + "Steady=true", e + "Solver=dynamics"}), t + "Steady", {"'dynamics'"});
-    EXPECT_EQ(elastic_fault({t + "Steady=true"}), "");
-    expect(elastic_fault({t + "Stepper=rk4"}), t + "Stepper", {"'Solver' in section 'Elasticity'"});
-    expect(elastic_fault({"Output/Write at=0.1"}), "Output/Write at", {"equilibrium"});
-    EXPECT_EQ(elastic_fault({"Output/Write at=0.1", e + "Solver=dynamics"}), "");
-    const std::string a = "Cracks/Segments=0.2,0.5 ; 0.5,0.5", b = "Cracks/Growth=2: 0, 0.1,0";
-    expect(elastic_fault({a, b, t + "Steady=true"}), t + "Steady", {"cracks that grow"});
-    EXPECT_EQ(elastic_fault({a, b, "Output/Write at=0.1"}), "");
-    expect(elastic_fault({"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Transmission=0.5"}),
-           "Cracks/Transmission",
-           {"no force"});
-    expect(elastic_fault({pd + "Calibration=analytic"}),
-           pd + "Calibration",
-           {"not for use", "own families"});
-    expect(elastic_fault({pd + "Self term=paper"}), pd + "Self term", {"has no effect"});
-    expect(elastic_fault({pd + "Flux treatment=extrapolation"}),
-           pd + "Flux treatment",
-           {"has no effect", "'natural'"});
-    EXPECT_EQ(elastic_fault({pd + "Surface correction=moments"}), "");
-    expect(elastic_fault({pd + "Surface correction=energy", "Models=finite elements"}),
-           pd + "Surface correction",
-           {"has no effect"});
-    expect(elastic_fault({pd + "Surface correction=crack scaling"}),
-           pd + "Surface correction",
-           {"has no effect", "coupled"});
-    for (const char *const treatment : {"fictitious mirror", "fictitious constant", "layer"})
-      expect(elastic_fault({pd + "Boundary treatment=" + treatment}),
-             pd + "Boundary treatment",
-             {"not defined", "use 'none'"});
-    expect(elastic_fault({pd + "Boundary treatment=exchange"}),
-           pd + "Boundary treatment",
-           {"dilatation", "use 'none'"});
-    EXPECT_EQ(elastic_fault({pd + "Operator form=lattice"}), "");
-    expect(elastic_fault({pd + "Operator form=lattice", full[0], full[1], full[2]}),
-           pd + "Operator form",
-           {"'Kinematics = full'", "'auto'"});
-    expect(elastic_fault({pd + "Operator form=lattice", "Material/Critical stretch=0.1"}),
-           pd + "Operator form",
-           {"may break", "'auto'"});
-    EXPECT_EQ(elastic_fault({"Output/Grid=5, 5"}), "");
-    expect(elastic_fault({"Finite elements/Capacity=consistent"}),
-           "Finite elements/Capacity",
-           {"lumped"});
+    expect_elastic_faults({}, R"(
+Elasticity/Model=bond base => Elasticity/Model | Did you mean 'bond-based'?
+Elasticity/Solver=conjugate gradient => Elasticity/Solver | Did you mean 'conjugate gradients'?
+Elasticity/Kinematics=full => Elasticity/Kinematics | 'conjugate gradients'
+Time/Steady=true & Elasticity/Solver=dynamics => Time/Steady | 'dynamics'
+Time/Steady=true =>
+Time/Stepper=rk4 => Time/Stepper | 'Solver' in section 'Elasticity'
+Output/Write at=0.1 => Output/Write at | equilibrium
+Output/Write at=0.1 & Elasticity/Solver=dynamics =>
+Cracks/Segments=0.2,0.5 ; 0.5,0.5 & Cracks/Growth=2: 0, 0.1,0 & Time/Steady=true => Time/Steady | cracks that grow
+Cracks/Segments=0.2,0.5 ; 0.5,0.5 & Cracks/Growth=2: 0, 0.1,0 & Output/Write at=0.1 =>
+Cracks/Segments=0.2,0.5 ; 0.5,0.5 & Cracks/Transmission=0.5 => Cracks/Transmission | no force
+Peridynamics/Calibration=analytic => Peridynamics/Calibration | not for use | own families
+Peridynamics/Self term=paper => Peridynamics/Self term | has no effect
+Peridynamics/Flux treatment=extrapolation => Peridynamics/Flux treatment | has no effect | 'natural'
+Peridynamics/Surface correction=moments =>
+Peridynamics/Surface correction=energy & Models=finite elements => Peridynamics/Surface correction | has no effect
+Peridynamics/Surface correction=crack scaling => Peridynamics/Surface correction | has no effect | coupled
+Peridynamics/Boundary treatment=exchange => Peridynamics/Boundary treatment | dilatation | use 'none'
+Peridynamics/Operator form=lattice =>
+Peridynamics/Operator form=lattice & Material/Critical stretch=0.1 => Peridynamics/Operator form | may break | 'auto'
+Output/Grid=5, 5 =>
+Finite elements/Capacity=consistent => Finite elements/Capacity | lumped
+Models=peridynamics & Elasticity/Kinematics=full & Elasticity/Solver=dynamics =>
+Elasticity/Kinematics=full & Elasticity/Solver=dynamics => Elasticity/Kinematics | small displacements
+Peridynamics/Boundary treatment=fictitious mirror => Peridynamics/Boundary treatment | not defined | use 'none'
+Peridynamics/Boundary treatment=fictitious constant => Peridynamics/Boundary treatment | not defined | use 'none'
+Peridynamics/Boundary treatment=layer => Peridynamics/Boundary treatment | not defined | use 'none'
+Peridynamics/Operator form=lattice & Models=peridynamics & Elasticity/Kinematics=full & Elasticity/Solver=dynamics => Peridynamics/Operator form | 'Kinematics = full' | 'auto'
+)");
+    expect_elastic_faults<1>({}, "Elasticity/Plane=strain => Elasticity/Plane | a bar");
+    expect_elastic_faults<3>({}, "Elasticity/Plane=strain => Elasticity/Plane | 'Dimension' is 3");
   }
 
 
   TEST(ElasticScenes, fictitious_nodes)
   {
-    const std::string entry = "Peridynamics/Surface correction",
-                      given = entry + "=fictitious nodes";
-    EXPECT_EQ(elastic_fault({given}), "");
-    EXPECT_EQ(elastic_fault<1>({given}), "");
-    EXPECT_EQ(
-      elastic_fault({given, "Models=coupled", "Coupling/Zone=x-0.5", "Coupling/Scheme=blending"}),
-      "");
-    const std::vector<std::pair<Overrides, std::string>> list = {
-      {{"Models=finite elements"}, "has no effect"},
-      {{"Models=coupled", "Coupling/Zone=x-0.5"}, "'splice' or 'blending'"},
-      {{"Domain/Nodes=cell centers"}, "'cell centers'"},
-      {{"Peridynamics/Nodal volume=full"}, "'Nodal volume = partial'"},
-      {{"Cracks/Segments=0.2,0.5 ; 0.5,0.5", "Cracks/Mesh=faces"}, "'removed'"},
-      {{"Models=peridynamics", e + "Kinematics=full", e + "Solver=dynamics"},
-       "'Kinematics = full'"},
-      {{"Material/Critical stretch=0.1"}, "may break"},
-      {{b + "Traction=right: 1, 0", b + "Traction layer=0.1"}, "'Traction layer'"},
-      {{e + "Model=bond-based"}, "'Model = state-based'"},
-      {{b + "Symmetry=bottom, top"}, "'bottom' and 'top'"},
-      {{b + "Symmetry=top", "Cracks/Segments=0.2,0.5 ; 0.5,0.99"}, "symmetry 'top'"},
-      {{"Peridynamics/Operator form=lattice"}, "makes a matrix"}};
-    for (const auto &[more, words] : list)
-      {
-        Overrides overrides = more;
-        overrides.push_back(given);
-        expect(elastic_fault(overrides), entry, {words});
-      }
+    const Overrides given{"Peridynamics/Surface correction=fictitious nodes"};
+    expect_elastic_faults(given, R"(
+ =>
+Models=coupled & Coupling/Zone=x-0.5 & Coupling/Scheme=blending =>
+Models=finite elements => Peridynamics/Surface correction | has no effect
+Models=coupled & Coupling/Zone=x-0.5 => Peridynamics/Surface correction | 'splice' or 'blending'
+Domain/Nodes=cell centers => Peridynamics/Surface correction | 'cell centers'
+Peridynamics/Nodal volume=full => Peridynamics/Surface correction | 'Nodal volume = partial'
+Cracks/Segments=0.2,0.5 ; 0.5,0.5 & Cracks/Mesh=faces => Peridynamics/Surface correction | 'removed'
+Models=peridynamics & Elasticity/Kinematics=full & Elasticity/Solver=dynamics => Peridynamics/Surface correction | 'Kinematics = full'
+Material/Critical stretch=0.1 => Peridynamics/Surface correction | may break
+Boundary conditions/Traction=right: 1, 0 & Boundary conditions/Traction layer=0.1 => Peridynamics/Surface correction | 'Traction layer'
+Elasticity/Model=bond-based => Peridynamics/Surface correction | 'Model = state-based'
+Boundary conditions/Symmetry=bottom, top => Peridynamics/Surface correction | 'bottom' and 'top'
+Boundary conditions/Symmetry=top & Cracks/Segments=0.2,0.5 ; 0.5,0.99 => Peridynamics/Surface correction | symmetry 'top'
+Peridynamics/Operator form=lattice => Peridynamics/Surface correction | makes a matrix
+)");
+    EXPECT_EQ(elastic_fault<1>(given), "");
   }
 
 
   TEST(ElasticScenes, coupled)
   {
-    const std::string pd = "Peridynamics/", c = "Coupling/";
-    const Overrides   coupled = {"Models=coupled", c + "Zone=x - 0.5"};
-    const auto        with    = [&](const Overrides &more) {
-      Overrides overrides = coupled;
-      overrides.insert(overrides.end(), more.begin(), more.end());
-      return elastic_fault(overrides);
-    };
-    EXPECT_EQ(with({}), "");
-    expect(with({c + "Zone=adaptive", "Domain/Coarsening=1"}), c + "Zone", {"'adaptive'"});
-    Overrides faces = {"Cracks/Segments=0.2,0.3 ; 0.6,0.3", "Cracks/Mesh=faces"};
-    EXPECT_EQ(with(faces), "");
-    faces.push_back(c + "Scheme=splice");
-    expect(with(faces), "Cracks/Mesh", {"'Scheme = exchange'", "'removed'"});
-    EXPECT_EQ(with({c + "Scheme=splice", c + "Overlap=1"}), "");
-    EXPECT_EQ(with({c + "Scheme=blending", e + "Solver=conjugate gradients"}), "");
-    expect(with({c + "Scheme=splice", e + "Solver=conjugate gradients"}),
-           e + "Solver",
-           {"'Scheme = splice'", "energy", "'linear'"});
-    expect(with({c + "Scheme=blending", pd + "Surface correction=crack scaling"}),
-           pd + "Surface correction",
-           {"'Scheme = exchange'", "blending"});
-    expect(with({c + "Overlap=1"}), c + "Overlap", {"splice", "'exchange'"});
-    EXPECT_EQ(with({e + "Model=bond-based"}), "");
-    expect(with({e + "Model=bond-based", c + "Scheme=splice"}),
-           e + "Model",
-           {"Poisson ratio of its own", "'Scheme = exchange'"});
-    expect(with({e + "Model=bond-based", e + "Kinematics=full", e + "Solver=conjugate gradients"}),
-           e + "Kinematics",
-           {"coupled"});
-    faces[1] = "Cracks/Mesh=pairs";
-    expect(with(faces), "Cracks/Mesh", {"'removed' or 'faces'"});
-    expect(with({c + "Scheme=splice", "Domain/Nodes=cell centers"}), "Domain/Nodes", {"coupled"});
+    expect_elastic_faults({"Models=coupled", "Coupling/Zone=x - 0.5"}, R"(
+ =>
+Coupling/Zone=adaptive & Domain/Coarsening=1 => Coupling/Zone | 'adaptive'
+Coupling/Scheme=splice & Coupling/Overlap=1 =>
+Coupling/Scheme=blending & Elasticity/Solver=conjugate gradients =>
+Coupling/Scheme=splice & Elasticity/Solver=conjugate gradients => Elasticity/Solver | 'Scheme = splice' | energy | 'linear'
+Coupling/Scheme=blending & Peridynamics/Surface correction=crack scaling => Peridynamics/Surface correction | 'Scheme = exchange' | blending
+Coupling/Overlap=1 => Coupling/Overlap | splice | 'exchange'
+Elasticity/Model=bond-based =>
+Elasticity/Model=bond-based & Coupling/Scheme=splice => Elasticity/Model | Poisson ratio of its own | 'Scheme = exchange'
+Elasticity/Model=bond-based & Elasticity/Kinematics=full & Elasticity/Solver=conjugate gradients => Elasticity/Kinematics | coupled
+Coupling/Scheme=splice & Domain/Nodes=cell centers => Domain/Nodes | coupled
+Cracks/Segments=0.2,0.3 ; 0.6,0.3 & Cracks/Mesh=faces =>
+Cracks/Segments=0.2,0.3 ; 0.6,0.3 & Cracks/Mesh=faces & Coupling/Scheme=splice => Cracks/Mesh | 'Scheme = exchange' | 'removed'
+Cracks/Segments=0.2,0.3 ; 0.6,0.3 & Cracks/Mesh=pairs & Coupling/Scheme=splice => Cracks/Mesh | 'removed' or 'faces'
+)");
+  }
+
+
+  TEST(ElasticScenes, only_motion_needs_density)
+  {
+    expect_elastic_faults({"Material/Density=0"}, R"(
+ =>
+Elasticity/Solver=dynamics => Material/Density | greater than 0
+)");
+  }
+
+
+  TEST(ElasticScenes, constant_micromodulus_is_for_bonds_alone)
+  {
+    expect_elastic_faults({"Elasticity/Micromodulus=constant"}, R"(
+ => Elasticity/Micromodulus | bond-based
+Models=peridynamics & Elasticity/Model=bond-based =>
+Models=finite elements & Elasticity/Model=bond-based => Elasticity/Micromodulus | 'peridynamics'
+Models=peridynamics & Elasticity/Model=bond-based & Peridynamics/Surface correction=moments => Elasticity/Micromodulus | 'Surface correction'
+)");
   }
 } // namespace PeriDeal

@@ -2,15 +2,16 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/user_error.h>
-#include <perideal/study/naming.h>
-
-#include <gtest/gtest.h>
+#include <perideal/study/study_file.h>
 
 #include <set>
+
+#include "scene_tables.h"
 
 namespace
 {
   using namespace PeriDeal;
+  using namespace SceneTests;
 
   TEST(Study, VariationsAreSplitAtSingleBars)
   {
@@ -94,5 +95,53 @@ namespace
     EXPECT_EQ(text_hash(""), "cbf29ce484222325");
     EXPECT_EQ(text_hash("a"), "af63dc4c8601ec8c");
     EXPECT_EQ(text_hash("foobar"), "85944171f73967e8");
+  }
+
+
+  TEST(Study, MistakesInFiles)
+  {
+    const TemporaryFile scene("subsection Domain\nset Cells = 12, 12\nend\n");
+    const std::string   name = scene.name + ".json";
+    for (const FaultRow &row : fault_rows(R"(
+{"row": []} => 'row' | Did you mean 'rows'?
+{"rows": []} => 'rows' | at least one row
+{"rows": {}} => 'rows' | list
+{"rows": [3]} => row 1 | number
+{"rows": [{"scene": "PLATE"}]} => row 1 | 'name' | missing
+{"rows": [{"name": "a"}]} => row 'a' | 'scene' | missing
+{"rows": [{"name": 1, "scene": "PLATE"}]} => row 1 | 'name' | text in quotes
+{"rows": [{"name": "a", "scene": "PLATE", "sett": {}}]} => row 'a' | 'sett' | Did you mean 'set'?
+{"rows": [{"name": "a", "scene": "PLATE", "name": "b"}]} => 'name' | twice
+{"rows": [{"name": "a", "scene": "PLATE"},{"name": "a", "scene": "PLATE"}]} => 'a' | two rows
+{"rows": [{"name": "a", "scene": "PLATE", "vary": {"Domain/Cells": ["8, 8", "8, 8"]}}]} => 'a, Cells = 8, 8' | two rows
+{"rows": [{"name": "a", "scene": "PLATE", "set": {"Cells": "8, 8"}}]} => row 'a' | 'Cells' | Did you mean 'Domain/Cells'?
+{"rows": [{"name": "a", "scene": "PLATE"}], "set": {"Output/Field": "none"}} => key 'set' | Did you mean 'Output/Fields'?
+{"rows": [{"name": "a", "scene": "PLATE", "vary": {"Time/Stepr": ["rk4"]}}]} => 'vary' | Did you mean 'Time/Stepper'?
+{"rows": [{"name": "a", "scene": "PLATE", "set": {"Domain/Cells": [8, 8]}}]} => row 'a' | 'Domain/Cells' | [8,8]
+{"rows": [{"name": "a", "scene": "PLATE", "set": {"Title": "a # b"}}]} => row 'a' | 'Title' | #
+{"rows": [{"name": "a", "scene": "PLATE", "vary": {"Domain/Cells": "8, 8"}}]} => row 'a' | 'vary' | list of values
+{"rows": [{"name": "a", "scene": "PLATE", "vary": {"Domain/Cells": []}}]} => row 'a' | 'vary' | list of values
+{"rows": [{"name": "a", "scene": "PLATE", "set": {"Domain/Cells": "8, 8"}, "vary": {"Domain/Cells": ["9, 9"]}}]} => 'Domain/Cells' | 'set', too
+{"rows": [{"name": "a", "scene": "PLATE", "set": {"Output directory": "x"}}]} => 'Output directory' | decided by the study
+{"rows": [{"name": "a", "scene": "PLATE"}], "output": ""} => 'output' | empty
+{"rows": [{"name": "a", "scene": "PLATE", "quick": "yes"}]} => row 'a' | 'quick' | true or false
+{"rows": [{"name": "a", "scene": "PLATE", "x": [1]}]} => row 'a' | 'x'
+{"rows": [{"name": "a", "scene": "PLATE", "x": "Domain/Cels"}]} => row 'a' | 'x' | Did you mean 'Domain/Cells'?
+{"rows": [{"name": "a", "scene": "PLATE"}], "figures": [{"name": "f", "x": "bonds"}]} => figure 'f' | 'y' | missing
+{"rows": [{"name": "a", "scene": "PLATE"}], "figures": [{"name": "f", "x": "bonds", "y": "steps", "line": "model"}]} => figure 'f' | Did you mean 'lines'?
+{"rows": [{"name": "a", "scene": "PLATE"}], "figures": [{"name": "f", "x": "bonds", "y": "wal time"}]} => figure 'f' | Did you mean 'wall time'?
+{"rows": [{"name": "a", "scene": "PLATE"}], "figures": [{"name": "a/b", "x": "bonds", "y": "steps"}]} => figure 'a/b' | name of a file
+{"rows": [{"name": "a", "scene": "PLATE"}], "figures": [{"name": "f", "x": "bonds", "y": "steps"}, {"name": "f", "x": "bonds", "y": "steps"}]} => two figures
+)"))
+      {
+        SCOPED_TRACE(row.left);
+        std::string text = row.left;
+        for (std::size_t at = text.find("PLATE"); at != std::string::npos; at = text.find("PLATE"))
+          text.replace(at, 5, scene.name);
+        std::ofstream(name) << text;
+        EXPECT_FALSE(row.words.empty());
+        expect_parts(message_of([&] { read_study(name, MPI_COMM_SELF); }), row.words);
+      }
+    std::remove(name.c_str());
   }
 } // namespace
