@@ -114,7 +114,7 @@ namespace PeriDeal
                     ModelKind::finite_elements);
     nlohmann::ordered_json summary;
     Model<2>               model(ModelKind::finite_elements, *body.mesh);
-    make_diffusion_problem(model, body.scene)->describe_scene(summary, true);
+    DiffusionProblem<2>(make_diffusion_field(model, body.scene)).describe_scene(summary, true);
     EXPECT_EQ(summary["sides"]["right"], "contact layer 2, 0.5, 3*t");
     EXPECT_EQ(summary["sides"]["bottom"], "lamp 6, 2");
     EXPECT_EQ(summary["sides"]["top"], "insulated");
