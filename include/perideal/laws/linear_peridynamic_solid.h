@@ -41,7 +41,7 @@ namespace PeriDeal
       return stiffnesses / square;
     }
 
-    /** The force along W xi (W x Y/|Y|) by which a bond pulls at its node. @param tau of both ends */
+    /** The force along W xi (W x Y/|Y|) by which a bond pulls. @param tau of both ends */
     inline double force(const double spring, const double product, const double tau)
     {
       return spring * product + tau;

@@ -12,7 +12,7 @@ namespace PeriDeal
 {
   /**
    * The nodes at the far ends of a solid's bonds: those of the body by their local numbers, and
-   * behind these the fictitious ones, whose displacements have to be found (FictitiousImages::find).
+   * behind these the fictitious ones, whose displacements have to be found (find()).
    */
   template <int dim>
   class BondEnds

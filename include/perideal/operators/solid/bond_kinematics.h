@@ -82,7 +82,7 @@ namespace PeriDeal
     /** What the bonds of an owned node in the body pull at it by. */
     dealii::Tensor<1, dim> force_on(const unsigned int i, const double *u, const Vector &tau) const;
 
-    /** find_forces() of single nodes in the body, with full kinematics. y are those of owned nodes. */
+    /** find_forces() of single nodes in the body, with full kinematics. */
     void find_forces_of(const std::vector<unsigned int> &nodes,
                         double                          *y,
                         const double                    *u,

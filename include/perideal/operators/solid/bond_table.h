@@ -36,9 +36,9 @@ namespace PeriDeal
    * forces and moments balance.
    *
    * On a lattice in 2D and 3D, with linear kinematics, where no surface is corrected, nodes store
-   * no bonds in the body (SolidSums) whose bonds no crack cuts, now or later. A node gets a row when
-   * the first of its bonds is about to break (store_row()): its sums then are those of the row,
-   * what the lattice finds there is overwritten.
+   * no bonds in the body (SolidSums) whose bonds no crack cuts, now or later. A node gets a row
+   * when the first of its bonds is about to break (store_row()): its sums then are those of the
+   * row, what the lattice finds there is overwritten.
    *
    * Which bonds are whole, since when others are not, and what did that, stands here and nowhere
    * else. Displacements have up-to-date ghosts. Not collective unless stated.

@@ -96,8 +96,8 @@ namespace PeriDeal
     void add_between_vertices(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
 
     /**
-     * Sum of E_i over these nodes; over all nodes, all of it. Ghosts as above. @param thermal strains
-     * of nodes known here; empty: none
+     * Sum of E_i over these nodes; over all nodes, all of it. Ghosts as above.
+     * @param thermal strains of nodes known here; empty: none
      */
     double energy(const Vector                    &u,
                   const std::vector<unsigned int> &of_nodes,
