@@ -58,7 +58,7 @@ namespace PeriDeal
     /** Some load of this process is not 0, or may be at another time. */
     bool any() const
     {
-      return any_load;
+      return varies || any_load;
     }
 
     /** Sum of this process's entries of the last at(). */
@@ -109,9 +109,8 @@ namespace PeriDeal
       loads = 0.;
       assemble(t);
       sum_of_loads = std::accumulate(loads.begin(), loads.end(), 0.);
-      any_load     = varies || std::any_of(loads.begin(), loads.end(), [](const double load) {
-                   return load != 0.;
-                 });
+      any_load =
+        std::any_of(loads.begin(), loads.end(), [](const double load) { return load != 0.; });
     }
 
     const BoundaryConditions<dim> &conditions;
