@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/connected_sets.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/body_voids.h>
 #include <perideal/bonds/bond_pieces.h>
 #include <perideal/bonds/boundary_facets.h>
@@ -397,13 +398,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                       \
-  template class BodyVoids<dim>;                                                        \
-  template std::unique_ptr<BodyVoids<dim>> make_body_voids(const Nodes<dim> &,          \
-                                                           const BodyParameters<dim> &, \
-                                                           const KernelWeights<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class BodyVoids);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_body_voids);
 } // namespace PeriDeal

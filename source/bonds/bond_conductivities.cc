@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/base/worst_trip.h>
 #include <perideal/bonds/bond_conductivities.h>
@@ -143,7 +144,5 @@ namespace PeriDeal
     return values.capacity() * sizeof(double);
   }
 
-  template class BondConductivities<1>;
-  template class BondConductivities<2>;
-  template class BondConductivities<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BondConductivities);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/bond_pieces.h>
 
 #include <cstdlib>
@@ -105,7 +106,5 @@ namespace PeriDeal
   }
 
 
-  template std::vector<BondPiece<1>> bond_pieces(const BondPiece<1>::Site &);
-  template std::vector<BondPiece<2>> bond_pieces(const BondPiece<2>::Site &);
-  template std::vector<BondPiece<3>> bond_pieces(const BondPiece<3>::Site &);
+  PERIDEAL_INSTANTIATE_FUNCTION(bond_pieces);
 } // namespace PeriDeal

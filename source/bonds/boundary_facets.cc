@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/boundary_facets.h>
 
 #include <algorithm>
@@ -402,6 +403,5 @@ namespace PeriDeal
   }
 
 
-  template class BoundaryFacets<2>;
-  template class BoundaryFacets<3>;
+  PERIDEAL_INSTANTIATE_CLASS_2_3(class BoundaryFacets);
 } // namespace PeriDeal

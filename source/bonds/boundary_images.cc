@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/boundary_facets.h>
 #include <perideal/bonds/boundary_images.h>
 
@@ -347,15 +348,5 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                           \
-  template std::vector<BoundaryImage<dim>> boundary_images( \
-    const Nodes<dim> &,                                     \
-    const std::vector<types::boundary_id> &,                \
-    const std::function<bool(const types::boundary_id)> &,  \
-    const double,                                           \
-    ThinParts *);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(boundary_images);
 } // namespace PeriDeal

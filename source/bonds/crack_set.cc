@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/crack_set.h>
 #include <perideal/laws/crack_conductance.h>
 
@@ -358,7 +359,5 @@ namespace PeriDeal
   }
 
 
-  template class CrackSet<1>;
-  template class CrackSet<2>;
-  template class CrackSet<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CrackSet);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/diffusion_bonds.h>
 
 namespace PeriDeal
@@ -172,7 +173,5 @@ namespace PeriDeal
     return weights().self_members().empty();
   }
 
-  template class DiffusionBonds<1>;
-  template class DiffusionBonds<2>;
-  template class DiffusionBonds<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class DiffusionBonds);
 } // namespace PeriDeal

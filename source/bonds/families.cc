@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/boundary_images.h>
 #include <perideal/bonds/families.h>
@@ -216,14 +217,7 @@ namespace PeriDeal
     return topology.memory_consumption();
   }
 
-#define PERIDEAL_INSTANTIATE(dim)                                                              \
-  template class Families<dim>;                                                                \
-  template KernelWeights<dim> kernel_weights(const Nodes<dim> &, const BodyParameters<dim> &); \
-  template double             halo_reach(const Nodes<dim> &,                                   \
-                                         const BodyParameters<dim> &,                          \
-                                         const KernelWeights<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class Families);
+  PERIDEAL_INSTANTIATE_FUNCTION(kernel_weights);
+  PERIDEAL_INSTANTIATE_FUNCTION(halo_reach);
 } // namespace PeriDeal

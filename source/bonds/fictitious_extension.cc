@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/fictitious_extension.h>
 
@@ -238,11 +239,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)          \
-  template class FictitiousExtension<dim>; \
-  template void throw_if_narrow(const Families<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class FictitiousExtension);
+  PERIDEAL_INSTANTIATE_FUNCTION(throw_if_narrow);
 } // namespace PeriDeal

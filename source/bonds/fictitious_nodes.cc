@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/fictitious_nodes.h>
 
@@ -170,15 +171,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template void                             require_fictitious_nodes(const BodyParameters<dim> &); \
-  template std::vector<FictitiousNode<dim>> make_fictitious_nodes(const Nodes<dim> &,              \
-                                                                  const BoundaryConditions<dim> &, \
-                                                                  const BoundaryTreatment,         \
-                                                                  const NodalVolume,               \
-                                                                  const Lattice<dim>::Index &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(require_fictitious_nodes);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_fictitious_nodes);
 } // namespace PeriDeal

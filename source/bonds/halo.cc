@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/halo.h>
 #include <perideal/bonds/process_boxes.h>
 
@@ -117,16 +118,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                \
-  template void prepare_search(Nodes<dim> &,     \
-                               const HaloNeed &, \
-                               const typename Lattice<dim>::Index &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
-
-  template void add_halo(Nodes<1> &, const HaloNeed &);
-  template void add_halo(Nodes<2> &, const HaloNeed &);
-  template void add_halo(Nodes<3> &, const HaloNeed &);
+  PERIDEAL_INSTANTIATE_FUNCTION(prepare_search);
+  PERIDEAL_INSTANTIATE_FUNCTION(add_halo);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/kernel_weights.h>
 #include <perideal/laws/kernel.h>
 #include <perideal/laws/volume_fraction.h>
@@ -220,7 +221,5 @@ namespace PeriDeal
     return parameters.horizon;
   }
 
-  template class KernelWeights<1>;
-  template class KernelWeights<2>;
-  template class KernelWeights<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class KernelWeights);
 } // namespace PeriDeal

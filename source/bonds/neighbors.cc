@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/neighbors.h>
 
 #include <algorithm>
@@ -110,7 +111,5 @@ namespace PeriDeal
     return search->memory_consumption() + beyond.capacity() * sizeof(FictitiousNode<dim>);
   }
 
-  template class Neighbors<1>;
-  template class Neighbors<2>;
-  template class Neighbors<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class Neighbors);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/node_factors.h>
 
 namespace PeriDeal
@@ -54,7 +55,5 @@ namespace PeriDeal
     return factors.capacity() * sizeof(double);
   }
 
-  template class NodeFactors<1>;
-  template class NodeFactors<2>;
-  template class NodeFactors<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class NodeFactors);
 } // namespace PeriDeal

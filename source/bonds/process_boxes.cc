@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/bonds/process_boxes.h>
 
 #include <algorithm>
@@ -66,7 +67,5 @@ namespace PeriDeal
   }
 
 
-  template class ProcessBoxes<1>;
-  template class ProcessBoxes<2>;
-  template class ProcessBoxes<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class ProcessBoxes);
 } // namespace PeriDeal

@@ -224,9 +224,10 @@ namespace PeriDeal
   }
 
 
-  template const ProblemFactory<1> &problem_factory<1>(const Physics);
-  template const ProblemFactory<2> &problem_factory<2>(const Physics);
-  template const ProblemFactory<3> &problem_factory<3>(const Physics);
+#define PERIDEAL_TEMPLATES(dim) \
+  template const ProblemFactory<dim> &problem_factory<dim>(const Physics);
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 
 
   PERIDEAL_INSTANTIATE_FUNCTION(make_reference);

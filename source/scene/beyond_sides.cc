@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/lists.h>
 
@@ -319,20 +320,15 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                 \
-  template Tensor<1, dim> whole_extent(const BodyParameters<dim> &);                              \
-  template bool   goes_on_beyond(const BodyParameters<dim> &body, const types::boundary_id side); \
-  template bool   is_free(const BodyParameters<dim> &body, const types::boundary_id side);        \
-  template double thin_on_mesh(const BodyParameters<dim> &body);                                  \
-  template bool   completes_at_surfaces(const BodyParameters<dim> &);                             \
-  template bool   families_end(const BodyParameters<dim> &);                                      \
-  template std::string                     note_on_held_rows(const BodyParameters<dim> &body);    \
-  template std::array<BeyondSide, 2 * dim> beyond_sides(const BodyParameters<dim> &body);         \
-  template bool                            completes_mesh(const BodyParameters<dim> &body);       \
-  template std::string                     automatic_correction(const BodyParameters<dim> &body); \
-  template std::string                     note_on_cut_sides(const BodyParameters<dim> &body);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(whole_extent);
+  PERIDEAL_INSTANTIATE_FUNCTION(goes_on_beyond);
+  PERIDEAL_INSTANTIATE_FUNCTION(is_free);
+  PERIDEAL_INSTANTIATE_FUNCTION(thin_on_mesh);
+  PERIDEAL_INSTANTIATE_FUNCTION(completes_at_surfaces);
+  PERIDEAL_INSTANTIATE_FUNCTION(families_end);
+  PERIDEAL_INSTANTIATE_FUNCTION(note_on_held_rows);
+  PERIDEAL_INSTANTIATE_FUNCTION(beyond_sides);
+  PERIDEAL_INSTANTIATE_FUNCTION(completes_mesh);
+  PERIDEAL_INSTANTIATE_FUNCTION(automatic_correction);
+  PERIDEAL_INSTANTIATE_FUNCTION(note_on_cut_sides);
 } // namespace PeriDeal

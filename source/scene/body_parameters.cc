@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/body_parameters.h>
 #include <perideal/scene/lists.h>
@@ -137,12 +138,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)      \
-  template struct BodyParameters<dim>; \
-  template struct HeatParameters<dim>; \
-  template struct SolidParameters<dim>;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(struct BodyParameters);
+  PERIDEAL_INSTANTIATE_CLASS(struct HeatParameters);
+  PERIDEAL_INSTANTIATE_CLASS(struct SolidParameters);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/boundary_conditions.h>
 #include <perideal/scene/lists.h>
 
@@ -452,7 +453,5 @@ namespace PeriDeal
   }
 
 
-  template class BoundaryConditions<1>;
-  template class BoundaryConditions<2>;
-  template class BoundaryConditions<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BoundaryConditions);
 } // namespace PeriDeal

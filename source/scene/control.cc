@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/control.h>
 #include <perideal/scene/lists.h>
 
@@ -424,7 +425,5 @@ namespace PeriDeal
   }
 
 
-  template class OutputControl<1>;
-  template class OutputControl<2>;
-  template class OutputControl<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class OutputControl);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/crack_geometry.h>
 
 #include <algorithm>
@@ -259,13 +260,7 @@ namespace PeriDeal
   }
 
 
-  template std::vector<CrackGeometry<1>> make_open_geometries(std::vector<CrackPiece<1>>);
-  template std::vector<CrackGeometry<2>> make_open_geometries(std::vector<CrackPiece<2>>);
-  template std::vector<CrackGeometry<3>> make_open_geometries(std::vector<CrackPiece<3>>);
-  template std::vector<CrackGeometry<1>> make_crack_geometries(const std::vector<CrackPiece<1>> &);
-  template std::vector<CrackGeometry<2>> make_crack_geometries(const std::vector<CrackPiece<2>> &);
-  template std::vector<CrackGeometry<3>> make_crack_geometries(const std::vector<CrackPiece<3>> &);
-  template class CrackGeometry<1>;
-  template class CrackGeometry<2>;
-  template class CrackGeometry<3>;
+  PERIDEAL_INSTANTIATE_FUNCTION(make_open_geometries);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_crack_geometries);
+  PERIDEAL_INSTANTIATE_CLASS(class CrackGeometry);
 } // namespace PeriDeal

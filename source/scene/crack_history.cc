@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/crack_history.h>
 #include <perideal/scene/lists.h>
 
@@ -260,7 +261,5 @@ namespace PeriDeal
   }
 
 
-  template class CrackHistory<1>;
-  template class CrackHistory<2>;
-  template class CrackHistory<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CrackHistory);
 } // namespace PeriDeal

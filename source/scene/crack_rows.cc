@@ -3,6 +3,7 @@
 
 // Cracks that run along rows of nodes, and the lattice beside which they do not.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/lists.h>
 
@@ -232,7 +233,5 @@ namespace PeriDeal
   }
 
 
-  template void keep_cracks_off_nodes(Scene<1> &);
-  template void keep_cracks_off_nodes(Scene<2> &);
-  template void keep_cracks_off_nodes(Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(keep_cracks_off_nodes);
 } // namespace PeriDeal

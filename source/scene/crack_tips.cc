@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/crack_tips.h>
 
 #include <algorithm>
@@ -122,13 +123,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                                  \
-  template struct CrackTip<dim>;                                                                   \
-  template std::vector<CrackPiece<dim>> crack_pieces(const std::vector<std::vector<Point<dim>>> &, \
-                                                     const std::vector<CrackTip<dim>> &,           \
-                                                     const double);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(struct CrackTip);
+  PERIDEAL_INSTANTIATE_FUNCTION(crack_pieces);
 } // namespace PeriDeal

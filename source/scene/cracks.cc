@@ -4,6 +4,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <perideal/base/clipped.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/cracks.h>
 #include <perideal/scene/lists.h>
@@ -619,7 +620,5 @@ namespace PeriDeal
   }
 
 
-  template class Cracks<1>;
-  template class Cracks<2>;
-  template class Cracks<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class Cracks);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 // Cracks of solids along the axes, and the lattice on whose faces they lie.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -261,7 +262,5 @@ namespace PeriDeal
   }
 
 
-  template void lay_cracks_on_faces(Scene<1> &);
-  template void lay_cracks_on_faces(Scene<2> &);
-  template void lay_cracks_on_faces(Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(lay_cracks_on_faces);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/tensor.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
 #include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
@@ -588,7 +589,5 @@ namespace PeriDeal
   }
 
 
-  template class Domain<1>;
-  template class Domain<2>;
-  template class Domain<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class Domain);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/diverged.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
 
@@ -500,7 +501,9 @@ namespace PeriDeal
   }
 
 
-  template double Expression::value<1>(const dealii::Point<1> &, const double, const double) const;
-  template double Expression::value<2>(const dealii::Point<2> &, const double, const double) const;
-  template double Expression::value<3>(const dealii::Point<3> &, const double, const double) const;
+#define PERIDEAL_TEMPLATES(dim)                                                                  \
+  template double Expression::value<dim>(const dealii::Point<dim> &, const double, const double) \
+    const;
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 // The heat problem that an elastic scene describes beside its equilibrium.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 
 #include "scene_checks.h"
@@ -107,7 +108,5 @@ namespace PeriDeal
   }
 
 
-  template void make_heat_problem(Scene<1> &);
-  template void make_heat_problem(Scene<2> &);
-  template void make_heat_problem(Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_heat_problem);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/holes.h>
 #include <perideal/scene/lists.h>
 
@@ -275,7 +276,5 @@ namespace PeriDeal
   }
 
 
-  template struct Holes<1>;
-  template struct Holes<2>;
-  template struct Holes<3>;
+  PERIDEAL_INSTANTIATE_CLASS(struct Holes);
 } // namespace PeriDeal

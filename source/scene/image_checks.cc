@@ -3,6 +3,7 @@
 
 // The parts of an image that no side holds, and what the user should know of the image.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/place_text.h>
 #include <perideal/scene/lists.h>
 
@@ -443,7 +444,5 @@ namespace PeriDeal
   }
 
 
-  template void check_image(Scene<1> &);
-  template void check_image(Scene<2> &);
-  template void check_image(Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(check_image);
 } // namespace PeriDeal

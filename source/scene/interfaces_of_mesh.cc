@@ -3,6 +3,7 @@
 
 // What a mesh file gives names to.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -353,11 +354,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                             \
-  template MeshGroups take_groups_of_mesh<dim>(Scene<dim> &); \
-  template void       add_interfaces<dim>(Scene<dim> &, const MeshGroups &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(take_groups_of_mesh);
+  PERIDEAL_INSTANTIATE_FUNCTION(add_interfaces);
 } // namespace PeriDeal

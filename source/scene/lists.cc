@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -229,10 +230,6 @@ namespace PeriDeal
   }
 
 
-  template dealii::Point<1>              parse_point<1>(const std::string &, const std::string &);
-  template dealii::Point<2>              parse_point<2>(const std::string &, const std::string &);
-  template dealii::Point<3>              parse_point<3>(const std::string &, const std::string &);
-  template std::vector<dealii::Point<1>> parse_points<1>(const std::string &, const std::string &);
-  template std::vector<dealii::Point<2>> parse_points<2>(const std::string &, const std::string &);
-  template std::vector<dealii::Point<3>> parse_points<3>(const std::string &, const std::string &);
+  PERIDEAL_INSTANTIATE_FUNCTION(parse_point);
+  PERIDEAL_INSTANTIATE_FUNCTION(parse_points);
 } // namespace PeriDeal

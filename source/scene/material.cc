@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/material.h>
@@ -435,10 +436,9 @@ namespace PeriDeal
 
 
 
-  template double Material::storage<1>(const dealii::Point<1> &, const double) const;
-  template double Material::storage<2>(const dealii::Point<2> &, const double) const;
-  template double Material::storage<3>(const dealii::Point<3> &, const double) const;
-  template Moduli Material::moduli<1>(const dealii::Point<1> &) const;
-  template Moduli Material::moduli<2>(const dealii::Point<2> &) const;
-  template Moduli Material::moduli<3>(const dealii::Point<3> &) const;
+#define PERIDEAL_TEMPLATES(dim)                                                           \
+  template double Material::storage<dim>(const dealii::Point<dim> &, const double) const; \
+  template Moduli Material::moduli<dim>(const dealii::Point<dim> &) const;
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/phases.h>
 #include <perideal/scene/vector_conditions.h>
@@ -417,14 +418,12 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
+#define PERIDEAL_TEMPLATES(dim)                                                                 \
   template bool   Region::contains<dim>(const dealii::Point<dim> &) const;                      \
   template int    Regions::at<dim>(const dealii::Point<dim> &) const;                           \
   template double MaterialProperty::value<dim>(const dealii::Point<dim> &, const double) const; \
   template const std::vector<double> &MaterialProperty::marked_temperatures<dim>(               \
     const dealii::Point<dim> &) const;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

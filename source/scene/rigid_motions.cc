@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/rigid_motions.h>
 #include <perideal/scene/scene.h>
 
@@ -292,7 +293,5 @@ namespace PeriDeal
   }
 
 
-  template std::vector<std::string> free_rigid_motions(const Scene<1> &);
-  template std::vector<std::string> free_rigid_motions(const Scene<2> &);
-  template std::vector<std::string> free_rigid_motions(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(free_rigid_motions);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -324,7 +325,5 @@ namespace PeriDeal
   }
 
 
-  template struct Scene<1>;
-  template struct Scene<2>;
-  template struct Scene<3>;
+  PERIDEAL_INSTANTIATE_CLASS(struct Scene);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/text_file.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/scene.h>
@@ -313,10 +314,6 @@ namespace PeriDeal
   }
 
 
-  template void                      parse_scene<1>(const SceneText &, Scene<1> &);
-  template void                      parse_scene<2>(const SceneText &, Scene<2> &);
-  template void                      parse_scene<3>(const SceneText &, Scene<3> &);
-  template std::shared_ptr<Scene<1>> scene_variant(const Scene<1> &, const std::vector<Setting> &);
-  template std::shared_ptr<Scene<2>> scene_variant(const Scene<2> &, const std::vector<Setting> &);
-  template std::shared_ptr<Scene<3>> scene_variant(const Scene<3> &, const std::vector<Setting> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(parse_scene);
+  PERIDEAL_INSTANTIATE_FUNCTION(scene_variant);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 // What is allowed, but rarely meant.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -203,7 +204,5 @@ namespace PeriDeal
   }
 
 
-  template void note_doubtful_entries(Scene<1> &);
-  template void note_doubtful_entries(Scene<2> &);
-  template void note_doubtful_entries(Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(note_doubtful_entries);
 } // namespace PeriDeal

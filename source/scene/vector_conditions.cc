@@ -3,6 +3,7 @@
 
 // Displacements and tractions of section `Boundary conditions`.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/boundary_conditions.h>
 #include <perideal/scene/lists.h>
 
@@ -244,14 +245,10 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template bool   VectorCondition::holds(const unsigned int, const dealii::Point<dim> &) const; \
-  template double integral_over_time(const Expression &,                                        \
-                                     const dealii::Point<dim> &,                                \
-                                     const double,                                              \
-                                     const double);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(integral_over_time);
+
+#define PERIDEAL_TEMPLATES(dim) \
+  template bool VectorCondition::holds(const unsigned int, const dealii::Point<dim> &) const;
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

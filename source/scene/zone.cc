@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/scene/zone.h>
 
 #include <algorithm>
@@ -223,11 +224,6 @@ namespace PeriDeal
     return kind == ZoneKind::follow;
   }
 
-#define PERIDEAL_INSTANTIATE(dim)                                                         \
-  template double distance_to_piece(const std::vector<Point<dim>> &, const Point<dim> &); \
-  template class Zone<dim>;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(distance_to_piece);
+  PERIDEAL_INSTANTIATE_CLASS(class Zone);
 } // namespace PeriDeal

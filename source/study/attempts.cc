@@ -3,6 +3,7 @@
 
 #include "attempts.h"
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 
 #include <algorithm>
@@ -491,10 +492,6 @@ namespace PeriDeal
   }
 
 
-  template void require_choice(const Scene<1> &);
-  template void require_choice(const Scene<2> &);
-  template void require_choice(const Scene<3> &);
-  template class Attempts<1>;
-  template class Attempts<2>;
-  template class Attempts<3>;
+  PERIDEAL_INSTANTIATE_FUNCTION(require_choice);
+  PERIDEAL_INSTANTIATE_CLASS(class Attempts);
 } // namespace PeriDeal

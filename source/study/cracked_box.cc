@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/study/cracked_box.h>
 
 #include <algorithm>
@@ -59,9 +60,7 @@ namespace PeriDeal
     return box;
   }
 
-  template CrackedBox cracked_box(const Scene<1> &);
-  template CrackedBox cracked_box(const Scene<2> &);
-  template CrackedBox cracked_box(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(cracked_box);
 
 
   std::string to_text(const CellCounts &cells)

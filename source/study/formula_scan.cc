@@ -3,6 +3,7 @@
 
 #include "formula_scan.h"
 
+#include <perideal/base/instantiate.h>
 #include <perideal/study/cracked_box.h>
 
 #include <algorithm>
@@ -402,10 +403,6 @@ namespace PeriDeal
   }
 
 
-  template NeedsOfFormulas     needs_of_formulas(const Scene<1> &);
-  template NeedsOfFormulas     needs_of_formulas(const Scene<2> &);
-  template NeedsOfFormulas     needs_of_formulas(const Scene<3> &);
-  template std::vector<double> needs_along_edges(const Scene<1> &);
-  template std::vector<double> needs_along_edges(const Scene<2> &);
-  template std::vector<double> needs_along_edges(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(needs_of_formulas);
+  PERIDEAL_INSTANTIATE_FUNCTION(needs_along_edges);
 } // namespace PeriDeal

@@ -3,6 +3,8 @@
 
 #include "given_values.h"
 
+#include <perideal/base/instantiate.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -168,10 +170,6 @@ namespace PeriDeal
   }
 
 
-  template bool   given_values_disagree(const Scene<1> &);
-  template bool   given_values_disagree(const Scene<2> &);
-  template bool   given_values_disagree(const Scene<3> &);
-  template double fineness_of_first_layer(const Scene<1> &);
-  template double fineness_of_first_layer(const Scene<2> &);
-  template double fineness_of_first_layer(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(given_values_disagree);
+  PERIDEAL_INSTANTIATE_FUNCTION(fineness_of_first_layer);
 } // namespace PeriDeal

@@ -3,6 +3,8 @@
 
 #include "goal_estimate.h"
 
+#include <perideal/base/instantiate.h>
+
 namespace PeriDeal
 {
   template <int dim>
@@ -32,10 +34,6 @@ namespace PeriDeal
   }
 
 
-  template std::optional<Attempt> cubic_attempt(const Scene<1> &, const Attempt &);
-  template std::optional<Attempt> cubic_attempt(const Scene<2> &, const Attempt &);
-  template std::optional<Attempt> cubic_attempt(const Scene<3> &, const Attempt &);
-  template double                 factor_of_cubic(const Scene<1> &);
-  template double                 factor_of_cubic(const Scene<2> &);
-  template double                 factor_of_cubic(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(cubic_attempt);
+  PERIDEAL_INSTANTIATE_FUNCTION(factor_of_cubic);
 } // namespace PeriDeal

@@ -7,6 +7,7 @@
 
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/gathered_lists.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/study/naming.h>
@@ -468,7 +469,5 @@ namespace PeriDeal
   }
 
 
-  template class MeasuredError<1>;
-  template class MeasuredError<2>;
-  template class MeasuredError<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class MeasuredError);
 } // namespace PeriDeal

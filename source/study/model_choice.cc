@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
@@ -458,15 +459,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)             \
-  template void run_scene(const Scene<dim> &, \
-                          const SceneText &,  \
-                          const MPI_Comm,     \
-                          const RunMode,      \
-                          const bool);        \
-  template void describe_choice(const Scene<dim> &, const SceneText &, const MPI_Comm, const bool);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(run_scene);
+  PERIDEAL_INSTANTIATE_FUNCTION(describe_choice);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/solvers/stepper.h>
 #include <perideal/study/cracked_box.h>
@@ -129,7 +130,5 @@ namespace PeriDeal
   }
 
 
-  template std::string scene_facts(const Scene<1> &);
-  template std::string scene_facts(const Scene<2> &);
-  template std::string scene_facts(const Scene<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(scene_facts);
 } // namespace PeriDeal

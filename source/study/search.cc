@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
 
 #include <algorithm>
@@ -203,7 +204,5 @@ namespace PeriDeal
   }
 
 
-  template class Search<1>;
-  template class Search<2>;
-  template class Search<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class Search);
 } // namespace PeriDeal

@@ -7,6 +7,7 @@
 #include <deal.II/fe/mapping_q.h>
 
 #include <perideal/base/diverged.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/bounds/spectrum.h>
 
 #include <algorithm>
@@ -227,7 +228,5 @@ namespace PeriDeal
   }
 
 
-  template Vector fast_field(const Problem<1> &);
-  template Vector fast_field(const Problem<2> &);
-  template Vector fast_field(const Problem<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(fast_field);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/fictitious_nodes.h>
 #include <perideal/operators/coupling/lattice_exchange.h>
@@ -125,18 +126,13 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                              \
-  template void                           Coupling<dim>::require(const BodyParameters<dim> &); \
-  template std::vector<bool>              hanging_nodes(const Nodes<dim> &);                   \
-  template double                         Coupling<dim>::zone_share() const;                   \
-  template std::unique_ptr<Coupling<dim>> make_coupling(Nodes<dim> &,                          \
-                                                        const BodyParameters<dim> &,           \
-                                                        const Zone<dim> &,                     \
-                                                        const CouplingScheme);                 \
-  template std::unique_ptr<Coupling<dim>> make_solid_coupling(Nodes<dim> &,                    \
-                                                              const BodyParameters<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(hanging_nodes);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_coupling);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_solid_coupling);
+
+#define PERIDEAL_TEMPLATES(dim)                                        \
+  template void   Coupling<dim>::require(const BodyParameters<dim> &); \
+  template double Coupling<dim>::zone_share() const;
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/coupling/exchange_laws.h>
@@ -340,11 +341,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)      \
-  template class ConductingBonds<dim>; \
-  template class ElasticBonds<dim>;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class ConductingBonds);
+  PERIDEAL_INSTANTIATE_CLASS(class ElasticBonds);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/coupling/family_zone.h>
 
@@ -81,7 +82,5 @@ namespace PeriDeal
   }
 
 
-  template class FamilyZone<1>;
-  template class FamilyZone<2>;
-  template class FamilyZone<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FamilyZone);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/coupling/lattice_bonds.h>
 
 #include <algorithm>
@@ -343,7 +344,5 @@ namespace PeriDeal
   }
 
 
-  template class LatticeBonds<1>;
-  template class LatticeBonds<2>;
-  template class LatticeBonds<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class LatticeBonds);
 } // namespace PeriDeal

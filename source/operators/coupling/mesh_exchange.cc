@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/process_boxes.h>
 #include <perideal/laws/interface.h>
@@ -373,7 +374,7 @@ namespace PeriDeal
   void MeshExchange<dim, Law>::join(const double time)
   {
     bool any = false;
-    zone = this->zone_at(time);
+    zone     = this->zone_at(time);
     for (unsigned int i = 0; i < joined.size() && zone.follows_cracks(); ++i)
       if (may_join[i] && !joined[i] && zone.contains(own_families.nodes().position(i)))
         {
@@ -540,11 +541,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                         \
+#define PERIDEAL_TEMPLATES(dim)                           \
   template class MeshExchange<dim, ConductingBonds<dim>>; \
   template class MeshExchange<dim, ElasticBonds<dim>>;
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

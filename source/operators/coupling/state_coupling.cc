@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/coupling/state_coupling.h>
@@ -401,7 +402,5 @@ namespace PeriDeal
   }
 
 
-  template class StateCoupling<1>;
-  template class StateCoupling<2>;
-  template class StateCoupling<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class StateCoupling);
 } // namespace PeriDeal

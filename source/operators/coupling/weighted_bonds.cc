@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/coupling/weighted_bonds.h>
 
 namespace PeriDeal
@@ -47,7 +48,5 @@ namespace PeriDeal
   }
 
 
-  template class WeightedBonds<1>;
-  template class WeightedBonds<2>;
-  template class WeightedBonds<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class WeightedBonds);
 } // namespace PeriDeal

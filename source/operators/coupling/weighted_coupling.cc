@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/coupling/weighted_coupling.h>
 
 #include <algorithm>
@@ -97,7 +98,5 @@ namespace PeriDeal
   }
 
 
-  template class WeightedCoupling<1>;
-  template class WeightedCoupling<2>;
-  template class WeightedCoupling<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class WeightedCoupling);
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/base/worst_trip.h>
 #include <perideal/bonds/fictitious_nodes.h>
@@ -338,7 +339,5 @@ namespace PeriDeal
   }
 
 
-  template class BondOperator<1>;
-  template class BondOperator<2>;
-  template class BondOperator<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BondOperator);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/diffusion/bonds_beside_elements.h>
 #include <perideal/operators/lattice/cut_bonds.h>
 
@@ -293,7 +294,5 @@ namespace PeriDeal
   }
 
 
-  template class BondsBesideElements<1>;
-  template class BondsBesideElements<2>;
-  template class BondsBesideElements<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BondsBesideElements);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/diffusion/cell_material.h>
 #include <perideal/operators/diffusion/heat_content.h>
@@ -211,7 +212,5 @@ namespace PeriDeal
   }
 
 
-  template class CellMaterial<1>;
-  template class CellMaterial<2>;
-  template class CellMaterial<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CellMaterial);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/diffusion/cell_matrices.h>
 
@@ -209,7 +210,5 @@ namespace PeriDeal
   }
 
 
-  template class CellMatrices<1>;
-  template class CellMatrices<2>;
-  template class CellMatrices<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CellMatrices);
 } // namespace PeriDeal

@@ -8,6 +8,7 @@
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/operators/diffusion/contact_pairs.h>
 #include <perideal/scene/crack_geometry.h>
@@ -123,10 +124,5 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim) \
-  template std::vector<ContactPair> contact_pairs(const DoFHandler<dim> &, const Cracks<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(contact_pairs);
 } // namespace PeriDeal

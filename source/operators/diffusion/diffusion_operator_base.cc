@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/place_text.h>
 #include <perideal/operators/diffusion/diffusion_operator_base.h>
 
@@ -120,7 +121,5 @@ namespace PeriDeal
   }
 
 
-  template class DiffusionOperatorBase<1>;
-  template class DiffusionOperatorBase<2>;
-  template class DiffusionOperatorBase<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class DiffusionOperatorBase);
 } // namespace PeriDeal

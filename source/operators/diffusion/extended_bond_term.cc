@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/diffusion/extended_bond_term.h>
 
 #include <algorithm>
@@ -160,7 +161,5 @@ namespace PeriDeal
   }
 
 
-  template class ExtendedBondTerm<1>;
-  template class ExtendedBondTerm<2>;
-  template class ExtendedBondTerm<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class ExtendedBondTerm);
 } // namespace PeriDeal

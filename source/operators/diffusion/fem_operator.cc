@@ -8,6 +8,7 @@
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/matrix_product.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
@@ -599,7 +600,5 @@ namespace PeriDeal
   }
 
 
-  template class FEMOperator<1>;
-  template class FEMOperator<2>;
-  template class FEMOperator<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FEMOperator);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/node_loops.h>
 #include <perideal/operators/diffusion/field_operator.h>
@@ -189,7 +190,5 @@ namespace PeriDeal
   }
 
 
-  template class FieldOperator<1>;
-  template class FieldOperator<2>;
-  template class FieldOperator<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FieldOperator);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/diffusion/heat_loads.h>
 
 namespace PeriDeal
@@ -169,7 +170,5 @@ namespace PeriDeal
   }
 
 
-  template class HeatLoads<1>;
-  template class HeatLoads<2>;
-  template class HeatLoads<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class HeatLoads);
 } // namespace PeriDeal

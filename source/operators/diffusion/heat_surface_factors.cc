@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/diffusion/heat_surface_factors.h>
 #include <perideal/operators/parts/crack_side_factors.h>
@@ -94,7 +95,5 @@ namespace PeriDeal
   }
 
 
-  template class HeatSurfaceFactors<1>;
-  template class HeatSurfaceFactors<2>;
-  template class HeatSurfaceFactors<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class HeatSurfaceFactors);
 } // namespace PeriDeal

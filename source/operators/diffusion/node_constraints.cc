@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/diffusion/node_constraints.h>
 #include <perideal/operators/parts/condition_faces.h>
@@ -420,7 +421,5 @@ namespace PeriDeal
   }
 
 
-  template class NodeConstraints<1>;
-  template class NodeConstraints<2>;
-  template class NodeConstraints<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class NodeConstraints);
 } // namespace PeriDeal

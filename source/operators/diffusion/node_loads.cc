@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/diffusion/node_loads.h>
 
 #include <algorithm>
@@ -91,7 +92,5 @@ namespace PeriDeal
   }
 
 
-  template class NodeLoads<1>;
-  template class NodeLoads<2>;
-  template class NodeLoads<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class NodeLoads);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/mapping_q1.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/diffusion/prescribed_values.h>
 
 #include <algorithm>
@@ -128,7 +129,5 @@ namespace PeriDeal
   }
 
 
-  template class PrescribedValues<1>;
-  template class PrescribedValues<2>;
-  template class PrescribedValues<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class PrescribedValues);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include "edge_nodes.h"
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/lattice_sites.h>
 
 #include <algorithm>
@@ -156,10 +157,6 @@ namespace PeriDeal
   }
 
 
-  template struct CompleteFamilies<1>;
-  template struct CompleteFamilies<2>;
-  template struct CompleteFamilies<3>;
-  template class EdgeNodes<1>;
-  template class EdgeNodes<2>;
-  template class EdgeNodes<3>;
+  PERIDEAL_INSTANTIATE_CLASS(struct CompleteFamilies);
+  PERIDEAL_INSTANTIATE_CLASS(class EdgeNodes);
 } // namespace PeriDeal

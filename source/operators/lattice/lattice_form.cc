@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/node_loops.h>
 #include <perideal/operators/lattice/bond_form.h>
 
@@ -475,11 +476,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                    \
-  template std::unique_ptr<BondForm> make_lattice_form(const DiffusionBonds<dim> &); \
-  template bool                      lattice_form_suits(const DiffusionBonds<dim> &, std::string &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(make_lattice_form);
+  PERIDEAL_INSTANTIATE_FUNCTION(lattice_form_suits);
 } // namespace PeriDeal

@@ -3,6 +3,8 @@
 
 #include "lattice_layout.h"
 
+#include <perideal/base/instantiate.h>
+
 #include <algorithm>
 
 namespace PeriDeal
@@ -317,7 +319,5 @@ namespace PeriDeal
            (varying_volumes.capacity() + varying_sums.capacity()) * sizeof(double);
   }
 
-  template class LatticeLayout<1>;
-  template class LatticeLayout<2>;
-  template class LatticeLayout<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class LatticeLayout);
 } // namespace PeriDeal

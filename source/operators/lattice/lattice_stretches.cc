@@ -3,6 +3,8 @@
 
 #include "lattice_stretches.h"
 
+#include <perideal/base/instantiate.h>
+
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -160,7 +162,5 @@ namespace PeriDeal
   }
 
 
-  template class LatticeStretches<1>;
-  template class LatticeStretches<2>;
-  template class LatticeStretches<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class LatticeStretches);
 } // namespace PeriDeal

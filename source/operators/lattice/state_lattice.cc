@@ -3,6 +3,8 @@
 
 #include "state_lattice.h"
 
+#include <perideal/base/instantiate.h>
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -272,7 +274,5 @@ namespace PeriDeal
   }
 
 
-  template class StateLattice<1>;
-  template class StateLattice<2>;
-  template class StateLattice<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class StateLattice);
 } // namespace PeriDeal

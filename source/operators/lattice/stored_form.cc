@@ -3,6 +3,7 @@
 
 // This file wants -O3 -ffp-contract=off.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/lattice/bond_form.h>
 
 #include <algorithm>
@@ -219,7 +220,5 @@ namespace PeriDeal
     return std::make_unique<StoredForm<dim>>(bonds);
   }
 
-  template std::unique_ptr<BondForm> make_stored_form(const DiffusionBonds<1> &);
-  template std::unique_ptr<BondForm> make_stored_form(const DiffusionBonds<2> &);
-  template std::unique_ptr<BondForm> make_stored_form(const DiffusionBonds<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_stored_form);
 } // namespace PeriDeal

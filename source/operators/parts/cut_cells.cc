@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/crack_conductance.h>
 #include <perideal/mesh/cut_cells.h>
 #include <perideal/operators/parts/cut_cells.h>
@@ -240,7 +241,5 @@ namespace PeriDeal
   }
 
 
-  template class CutCells<1>;
-  template class CutCells<2>;
-  template class CutCells<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CutCells);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/matrix_product.h>
 #include <perideal/operators/parts/element_matrix.h>
 
@@ -122,12 +123,7 @@ namespace PeriDeal
   }
 
 
-  template std::vector<std::uint64_t> places_on_lattice<1>(const std::vector<Point<1>> &,
-                                                           const Domain<1> &);
-  template std::vector<std::uint64_t> places_on_lattice<2>(const std::vector<Point<2>> &,
-                                                           const Domain<2> &);
-  template std::vector<std::uint64_t> places_on_lattice<3>(const std::vector<Point<3>> &,
-                                                           const Domain<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(places_on_lattice);
   template class ElementMatrix<1, 1>;
   template class ElementMatrix<2, 1>;
   template class ElementMatrix<3, 1>;

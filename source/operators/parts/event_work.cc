@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/parts/event_work.h>
 
 #include <algorithm>
@@ -114,16 +115,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                            \
-  template struct EventWork<dim>;                                                            \
-  template std::vector<unsigned int> owned_unknowns<dim>(                                    \
-    const std::vector<typename DoFHandler<dim>::active_cell_iterator> &,                     \
-    const Utilities::MPI::Partitioner &);                                                    \
-  template std::vector<BoundingBox<dim>> boxes_beside(const std::vector<BoundingBox<dim>> &, \
-                                                      const std::vector<BoundingBox<dim>> &, \
-                                                      const MPI_Comm);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(struct EventWork);
+  PERIDEAL_INSTANTIATE_FUNCTION(owned_unknowns);
+  PERIDEAL_INSTANTIATE_FUNCTION(boxes_beside);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 #include <perideal/operators/parts/hanging_nodes.h>
 
@@ -156,7 +157,5 @@ namespace PeriDeal
   }
 
 
-  template class HangingNodes<1>;
-  template class HangingNodes<2>;
-  template class HangingNodes<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class HangingNodes);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/point_order.h>
 #include <perideal/operators/solid/bond_breaking.h>
 
@@ -420,7 +421,5 @@ namespace PeriDeal
   }
 
 
-  template class BondBreaking<1>;
-  template class BondBreaking<2>;
-  template class BondBreaking<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BondBreaking);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/bond_ends.h>
 
 #include <cmath>
@@ -35,7 +36,5 @@ namespace PeriDeal
   }
 
 
-  template class BondEnds<1>;
-  template class BondEnds<2>;
-  template class BondEnds<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BondEnds);
 } // namespace PeriDeal

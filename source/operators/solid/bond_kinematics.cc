@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/bond_kinematics.h>
 
 #include <algorithm>
@@ -349,7 +350,5 @@ namespace PeriDeal
   }
 
 
-  template class BondKinematics<1>;
-  template class BondKinematics<2>;
-  template class BondKinematics<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BondKinematics);
 } // namespace PeriDeal

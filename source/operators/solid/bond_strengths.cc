@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/point_order.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/solid/bond_strengths.h>
@@ -143,7 +144,5 @@ namespace PeriDeal
   }
 
 
-  template class BondStrengths<1>;
-  template class BondStrengths<2>;
-  template class BondStrengths<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BondStrengths);
 } // namespace PeriDeal

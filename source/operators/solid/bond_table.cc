@@ -3,6 +3,7 @@
 
 // Which bonds are stored, and which the lattice knows.
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/make_room.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
@@ -338,7 +339,5 @@ namespace PeriDeal
   }
 
 
-  template class BondTable<1>;
-  template class BondTable<2>;
-  template class BondTable<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class BondTable);
 } // namespace PeriDeal

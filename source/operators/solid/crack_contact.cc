@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/crack_contact.h>
 
 #include <algorithm>
@@ -455,7 +456,5 @@ namespace PeriDeal
   }
 
 
-  template class CrackContact<1>;
-  template class CrackContact<2>;
-  template class CrackContact<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CrackContact);
 } // namespace PeriDeal

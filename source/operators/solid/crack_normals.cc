@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/crack_normals.h>
 
 #include <Eigen/Eigenvalues>
@@ -195,7 +196,5 @@ namespace PeriDeal
   }
 
 
-  template class CrackNormals<1>;
-  template class CrackNormals<2>;
-  template class CrackNormals<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class CrackNormals);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/parts/condition_faces.h>
 #include <perideal/operators/solid/displacement_conditions.h>
@@ -341,17 +342,7 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                           \
-  template void require_layer(const BodyParameters<dim> &,                                  \
-                              const std::vector<VectorCondition> &,                         \
-                              const std::string &,                                          \
-                              const double);                                                \
-  template class DisplacementConditions<dim>;                                               \
-  template ForceBalance gather_forces(const std::map<types::boundary_id, Tensor<1, dim>> &, \
-                                      const BodyParameters<dim> &,                          \
-                                      const MPI_Comm);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(require_layer);
+  PERIDEAL_INSTANTIATE_CLASS(class DisplacementConditions);
+  PERIDEAL_INSTANTIATE_FUNCTION(gather_forces);
 } // namespace PeriDeal

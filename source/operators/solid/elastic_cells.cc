@@ -3,6 +3,7 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/solid/elastic_cells.h>
@@ -239,7 +240,5 @@ namespace PeriDeal
   }
 
 
-  template class ElasticCells<1>;
-  template class ElasticCells<2>;
-  template class ElasticCells<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class ElasticCells);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/mapping_q1.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bounds/spectrum.h>
@@ -718,7 +719,5 @@ namespace PeriDeal
   }
 
 
-  template class ElasticElements<1>;
-  template class ElasticElements<2>;
-  template class ElasticElements<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class ElasticElements);
 } // namespace PeriDeal

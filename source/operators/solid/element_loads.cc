@@ -3,6 +3,7 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/element_loads.h>
 
 namespace PeriDeal
@@ -101,7 +102,5 @@ namespace PeriDeal
   }
 
 
-  template class ElementLoads<1>;
-  template class ElementLoads<2>;
-  template class ElementLoads<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class ElementLoads);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/coupling/breakable_zone.h>
 #include <perideal/operators/solid/family_bonds.h>
 
@@ -96,7 +97,5 @@ namespace PeriDeal
   }
 
 
-  template class FamilyBonds<1>;
-  template class FamilyBonds<2>;
-  template class FamilyBonds<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FamilyBonds);
 } // namespace PeriDeal

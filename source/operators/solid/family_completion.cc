@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/family_completion.h>
 
 #include <algorithm>
@@ -87,7 +88,5 @@ namespace PeriDeal
   }
 
 
-  template class FamilyCompletion<1>;
-  template class FamilyCompletion<2>;
-  template class FamilyCompletion<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FamilyCompletion);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/mesh/point_bins.h>
 #include <perideal/operators/solid/fictitious_bond_search.h>
@@ -464,7 +465,5 @@ namespace PeriDeal
   }
 
 
-  template class FictitiousBondSearch<1>;
-  template class FictitiousBondSearch<2>;
-  template class FictitiousBondSearch<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FictitiousBondSearch);
 } // namespace PeriDeal

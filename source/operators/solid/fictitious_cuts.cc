@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/fictitious_cuts.h>
 
 #include <algorithm>
@@ -49,17 +50,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                          \
-  template bool is_separated(const Families<dim> &,                                        \
-                             const unsigned int,                                           \
-                             const typename FictitiousExtension<dim>::Site::Term &,        \
-                             const Point<dim> &);                                          \
-  template bool is_cut(const Families<dim> &,                                              \
-                       const unsigned int,                                                 \
-                       const std::vector<typename FictitiousExtension<dim>::Site::Term> &, \
-                       const Point<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(is_separated);
+  PERIDEAL_INSTANTIATE_FUNCTION(is_cut);
 } // namespace PeriDeal

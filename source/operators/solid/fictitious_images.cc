@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/solid/fictitious_images.h>
@@ -180,7 +181,5 @@ namespace PeriDeal
   }
 
 
-  template class FictitiousImages<1>;
-  template class FictitiousImages<2>;
-  template class FictitiousImages<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class FictitiousImages);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/operators/solid/node_laws.h>
@@ -140,7 +141,5 @@ namespace PeriDeal
   }
 
 
-  template class NodeLaws<1>;
-  template class NodeLaws<2>;
-  template class NodeLaws<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class NodeLaws);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/coupling/exchange_laws.h>
 #include <perideal/operators/solid/pair_bonds.h>
@@ -76,7 +77,5 @@ namespace PeriDeal
   }
 
 
-  template class PairBonds<1>;
-  template class PairBonds<2>;
-  template class PairBonds<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class PairBonds);
 } // namespace PeriDeal

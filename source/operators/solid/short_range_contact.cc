@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/gathered_lists.h>
+#include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 #include <perideal/mesh/points_within.h>
 #include <perideal/operators/solid/short_range_contact.h>
@@ -429,7 +430,5 @@ namespace PeriDeal
   }
 
 
-  template class ShortRangeContact<1>;
-  template class ShortRangeContact<2>;
-  template class ShortRangeContact<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class ShortRangeContact);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/solid/fictitious_cuts.h>
@@ -263,7 +264,5 @@ namespace PeriDeal
   }
 
 
-  template struct SolidBonds<1>;
-  template struct SolidBonds<2>;
-  template struct SolidBonds<3>;
+  PERIDEAL_INSTANTIATE_CLASS(struct SolidBonds);
 } // namespace PeriDeal

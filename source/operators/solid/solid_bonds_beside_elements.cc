@@ -5,6 +5,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/coupling/state_coupling.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid/zone_breaking.h>
@@ -300,7 +301,5 @@ namespace PeriDeal
   }
 
 
-  template class SolidBondsBesideElements<1>;
-  template class SolidBondsBesideElements<2>;
-  template class SolidBondsBesideElements<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class SolidBondsBesideElements);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/solid_loads.h>
 #include <perideal/scene/beyond_sides.h>
 
@@ -121,7 +122,5 @@ namespace PeriDeal
   }
 
 
-  template class SolidLoads<1>;
-  template class SolidLoads<2>;
-  template class SolidLoads<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class SolidLoads);
 } // namespace PeriDeal

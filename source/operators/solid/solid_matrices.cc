@@ -4,6 +4,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/solid_matrices.h>
 
 #include <algorithm>
@@ -366,20 +367,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                     \
-  template void   find_stiffness_diagonal(const SolidBonds<dim> &, Vector &);         \
-  template void   mend_stiffness_diagonal(const SolidBonds<dim> &,                    \
-                                          const std::vector<unsigned int> &,          \
-                                          Vector &);                                  \
-  template Vector find_sums_of_dilatations(const SolidBonds<dim> &);                  \
-  template Vector find_row_sums(const SolidBonds<dim> &, const Vector &, const bool); \
-  template void   make_surrogate(const SolidBonds<dim> &,                             \
-                                 const BodyParameters<dim> &,                         \
-                                 const Vector &,                                      \
-                                 const Vector &,                                      \
-                                 TrilinosWrappers::SparseMatrix &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(find_stiffness_diagonal);
+  PERIDEAL_INSTANTIATE_FUNCTION(mend_stiffness_diagonal);
+  PERIDEAL_INSTANTIATE_FUNCTION(find_sums_of_dilatations);
+  PERIDEAL_INSTANTIATE_FUNCTION(find_row_sums);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_surrogate);
 } // namespace PeriDeal

@@ -5,6 +5,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/node_loops.h>
@@ -392,7 +393,5 @@ namespace PeriDeal
   }
 
 
-  template class SolidOperator<1>;
-  template class SolidOperator<2>;
-  template class SolidOperator<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class SolidOperator);
 } // namespace PeriDeal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/solid_sums.h>
 
 #include "../lattice/state_lattice.h"
@@ -169,7 +170,5 @@ namespace PeriDeal
   }
 
 
-  template class SolidSums<1>;
-  template class SolidSums<2>;
-  template class SolidSums<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class SolidSums);
 } // namespace PeriDeal

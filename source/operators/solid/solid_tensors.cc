@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/solid_tensors.h>
 
 #include <cmath>
@@ -83,11 +84,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                          \
-  template std::vector<double> nodal_dilatations(const SolidBonds<dim> &, const Vector &); \
-  template NodalTensors<dim> nodal_tensors(const SolidBonds<dim> &, const Vector &, const Vector &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(nodal_dilatations);
+  PERIDEAL_INSTANTIATE_FUNCTION(nodal_tensors);
 } // namespace PeriDeal

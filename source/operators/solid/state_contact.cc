@@ -3,6 +3,7 @@
 
 #include "state_contact.h"
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/crack_contact.h>
 #include <perideal/operators/solid/short_range_contact.h>
 
@@ -130,16 +131,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                       \
-  template std::unique_ptr<SolidContact> make_crack_contact<dim>(       \
-    const SolidBonds<dim> &,                                            \
-    const BodyParameters<dim> &,                                        \
-    const std::shared_ptr<const Utilities::MPI::Partitioner> &);        \
-  template std::unique_ptr<SolidContact> make_short_range_contact<dim>( \
-    const SolidBonds<dim> &,                                            \
-    const BodyParameters<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(make_crack_contact);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_short_range_contact);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/solid/solid_matrices.h>
@@ -577,7 +578,5 @@ namespace PeriDeal
   }
 
 
-  template class StateOperator<1>;
-  template class StateOperator<2>;
-  template class StateOperator<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class StateOperator);
 } // namespace PeriDeal

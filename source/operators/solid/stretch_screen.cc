@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/solid/stretch_screen.h>
 
@@ -465,7 +466,5 @@ namespace PeriDeal
   }
 
 
-  template class StretchScreen<1>;
-  template class StretchScreen<2>;
-  template class StretchScreen<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class StretchScreen);
 } // namespace PeriDeal

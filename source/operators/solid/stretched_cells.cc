@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/stretched_cells.h>
 
 #include <algorithm>
@@ -45,7 +46,5 @@ namespace PeriDeal
   }
 
 
-  template class StretchedCells<1>;
-  template class StretchedCells<2>;
-  template class StretchedCells<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class StretchedCells);
 } // namespace PeriDeal

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 #include <perideal/laws/family_moments.h>
 #include <perideal/laws/stretch_energy.h>
@@ -410,13 +411,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                               \
-  template void           require_surface_factors(const BodyParameters<dim> &); \
-  template SurfaceFactors surface_factors<dim>(const Families<dim> &,           \
-                                               const Peridynamics &,            \
-                                               const StoredBonds &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(require_surface_factors);
+  PERIDEAL_INSTANTIATE_FUNCTION(surface_factors);
 } // namespace PeriDeal

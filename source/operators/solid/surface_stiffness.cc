@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/surface_stiffness.h>
 
 namespace PeriDeal
@@ -93,7 +94,5 @@ namespace PeriDeal
   }
 
 
-  template Tensor<1, 1> surface_stiffness(const SolidBonds<1> &);
-  template Tensor<1, 2> surface_stiffness(const SolidBonds<2> &);
-  template Tensor<1, 3> surface_stiffness(const SolidBonds<3> &);
+  PERIDEAL_INSTANTIATE_FUNCTION(surface_stiffness);
 } // namespace PeriDeal

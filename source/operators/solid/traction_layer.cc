@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/displacement_conditions.h>
 #include <perideal/operators/solid/traction_layer.h>
 
@@ -177,12 +178,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                                               \
-  template void                            require_traction_layer(const BodyParameters<dim> &); \
-  template std::vector<TractionShare<dim>> traction_shares(const Nodes<dim> &,                  \
-                                                           const BoundaryConditions<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_FUNCTION(require_traction_layer);
+  PERIDEAL_INSTANTIATE_FUNCTION(traction_shares);
 } // namespace PeriDeal

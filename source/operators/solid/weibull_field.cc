@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/weibull_field.h>
 
 #include <algorithm>
@@ -54,7 +55,5 @@ namespace PeriDeal
   }
 
 
-  template class WeibullField<1>;
-  template class WeibullField<2>;
-  template class WeibullField<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class WeibullField);
 } // namespace PeriDeal

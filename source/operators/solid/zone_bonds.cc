@@ -3,6 +3,7 @@
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/solid/family_bonds.h>
 #include <perideal/operators/solid/pair_bonds.h>
@@ -309,12 +310,6 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_INSTANTIATE(dim)                                           \
-  template class ZoneBonds<dim>;                                            \
-  template std::unique_ptr<ZoneBonds<dim>> make_zone_bonds(Coupling<dim> &, \
-                                                           const BodyParameters<dim> &);
-  PERIDEAL_INSTANTIATE(1)
-  PERIDEAL_INSTANTIATE(2)
-  PERIDEAL_INSTANTIATE(3)
-#undef PERIDEAL_INSTANTIATE
+  PERIDEAL_INSTANTIATE_CLASS(class ZoneBonds);
+  PERIDEAL_INSTANTIATE_FUNCTION(make_zone_bonds);
 } // namespace PeriDeal

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/point_order.h>
@@ -586,7 +587,5 @@ namespace PeriDeal
   }
 
 
-  template class ZoneBreaking<1>;
-  template class ZoneBreaking<2>;
-  template class ZoneBreaking<3>;
+  PERIDEAL_INSTANTIATE_CLASS(class ZoneBreaking);
 } // namespace PeriDeal
