@@ -36,18 +36,14 @@ namespace PeriDeal
     class Redirection
     {
     public:
-      /** @param file whose end it is; empty: standard error. Throws std::runtime_error. */
+      /** @param file whose end it is; empty, or none that can be opened: standard error. */
       Redirection(const int descriptor, const std::string &file)
         : descriptor(descriptor)
         , before(dup(descriptor))
       {
-        const int target = file.empty() ? dup(STDERR_FILENO) :
-                                          open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+        int target = file.empty() ? -1 : open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
         if (target < 0)
-          {
-            close(before);
-            throw std::runtime_error("'" + file + "' cannot be written to");
-          }
+          target = dup(STDERR_FILENO);
         dup2(target, descriptor);
         close(target);
       }

@@ -57,7 +57,7 @@ namespace PeriDeal
       for (const Driver &driver : drivers)
         AssertThrow(
           request.of_drivers.count(driver.name) == 0,
-          UserError(driver.words + " are for `perideal study " + driver.name + " SCENE.prm`."));
+          UserError(driver.words + " are for `./run study " + driver.name + " SCENE.prm`."));
     }
   } // namespace
 

@@ -100,7 +100,7 @@ def _work_precision(options) -> int:
     if options.vary is not None:
         raise Error("--vary is not for work_precision, which varies methods and lattices; --cells names the lattices.")
     if _given(options, "maps", "random", "seed"):
-        raise Error("--maps, --random and --seed are for `perideal study stability SCENE.prm`.")
+        raise Error("--maps, --random and --seed are for `./run study stability SCENE.prm`.")
     study = [*(["--only", *options.only] if options.only else []), *(["--quick"] if options.quick else []),
              *(["--redo"] if options.redo else []), "--repeat", str(options.repeat or 1)]
     try:
@@ -121,7 +121,7 @@ def _stability(options) -> int:
     if options.only or options.redo or (options.repeat or 1) != 1:
         raise Error("--only, --redo and --repeat are not for stability, which has no rows; --maps chooses maps.")
     if _given(options, "cells", "reference", "budget", "measure", "no_auto"):
-        raise Error("--cells, --reference, --budget, --measure and --no-auto are for `perideal study work_precision SCENE.prm`.")
+        raise Error("--cells, --reference, --budget, --measure and --no-auto are for `./run study work_precision SCENE.prm`.")
     stability.run(options.files[0], stability.Options(
         overrides=options.set, output=options.output, n_random=options.random or 0, quick=options.quick, quiet=options.quiet,
         processes=options.ranks, **_given(options, "maps", "seed")))
@@ -130,12 +130,12 @@ def _stability(options) -> int:
 
 def _stop(number, _):
     """A signal ends a study as Ctrl-C does."""
-    raise KeyboardInterrupt({signal.SIGTERM: "a request to end (SIGTERM)", signal.SIGUSR1: "a request to stop (SIGUSR1)"}[number])
+    raise KeyboardInterrupt({signal.SIGTERM: "a request to end (SIGTERM)", signal.SIGHUP: "the end of the terminal (SIGHUP)", signal.SIGUSR1: "a request to stop (SIGUSR1)"}[number])
 
 
 def main(words) -> int:
     """Exit status."""
-    for number in (signal.SIGTERM, signal.SIGUSR1):
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1):
         signal.signal(number, _stop)
     try:
         if words[:1] == ["study"] and words[1:2] and words[1] in KINDS:
@@ -149,6 +149,9 @@ def main(words) -> int:
     except Error as error:
         print(f"\nperideal: {'error: ' if error.status == 1 else ''}{error}", file=sys.stderr)
         return error.status
+    except FileNotFoundError as error:  # the launcher, or what PERIDEAL_EXECUTABLE names
+        print(f"\nperideal: error: '{error.filename}' was not found.", file=sys.stderr)
+        return 1
     except KeyboardInterrupt as stop:
         print(f"\nperideal: stopped by {str(stop) or 'an interrupt (SIGINT)'}.", file=sys.stderr)
         return 3

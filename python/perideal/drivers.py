@@ -24,7 +24,7 @@ def write_text(path: str, text: str) -> None:
 def mistake_in(error: Error) -> str:
     """What is wrong with settings, without the words for overrides, which stand on no command line there. What is no mistake of a scene is raised
     on."""
-    if error.status != 1 or isinstance(error, CannotWrite):
+    if error.status != 1 or isinstance(error, CannotWrite) or str(error).startswith("out of memory"):
         raise error
     return str(error).removeprefix("command line: ")
 

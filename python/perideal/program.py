@@ -41,7 +41,7 @@ def find_program() -> str:
     named = os.environ.get("PERIDEAL_EXECUTABLE")
     if named:
         return named
-    for place in (PACKAGE.parents[1] / "build/release/applications/perideal", PACKAGE.parents[3] / "bin/perideal"):
+    for place in (PACKAGE.parents[1] / "build/release/applications/perideal", *(above / "bin/perideal" for above in PACKAGE.parents[3:4])):
         if place.is_file():
             return str(place)
     found = shutil.which("perideal")
@@ -56,19 +56,30 @@ def command(arguments: Iterable[str], processes: int = 1) -> list:
 
 
 def on_processes(words: list, processes: int) -> list:
-    """How a program of MPI is started; the launcher is PERIDEAL_MPIRUN, or mpirun."""
+    """How a program of MPI is started."""
     if processes == 1:
         return words
     # Without the network, of which Open MPI 5 complains where it leads nowhere; a batch system may give several machines.
     several = any(os.environ.get(name) for name in ("SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "PE_HOSTFILE"))
     network = [] if several else ["env", "OMPI_MCA_btl=" + os.environ.get("OMPI_MCA_btl", "^tcp")]
-    return [*network, os.environ.get("PERIDEAL_MPIRUN", "mpirun"), "-np", str(processes), *words]
+    return [*network, find_launcher(), "-np", str(processes), *words]
+
+
+def find_launcher() -> str:
+    """PERIDEAL_MPIRUN, that with which this checkout was configured, or mpirun: of another MPI it would start single processes."""
+    named = os.environ.get("PERIDEAL_MPIRUN")
+    cache = PACKAGE.parents[1] / "build/release/CMakeCache.txt"
+    if not named and cache.is_file():
+        found = re.search(r"^PERIDEAL_MPIRUN:FILEPATH=(.*)$", cache.read_text(errors="replace"), re.MULTILINE)
+        named = found.group(1) if found and not found.group(1).endswith("NOTFOUND") else None
+    return named or "mpirun"
 
 
 def environment() -> dict:
     """Of parallel programs, as in .ci/build.sh: several processes on few cores, also as root and in containers."""
     return dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                 OMPI_MCA_rmaps_base_oversubscribe="1", PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe",
+                OMPI_MCA_hwloc_base_binding_policy="none", PRTE_MCA_hwloc_default_binding_policy="none",
                 OMPI_MCA_orte_execute_quiet="1", OMPI_MCA_btl_vader_single_copy_mechanism="none", PMIX_MCA_gds="hash")
 
 

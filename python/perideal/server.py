@@ -44,6 +44,8 @@ class Server:
 
     def call(self, arguments: Iterable[str], timeout: Optional[float] = None, cwd=None) -> Answer:
         """Execute `perideal ARGUMENTS`. Raises subprocess.TimeoutExpired, after which the program is gone."""
+        if self.process is not None and self.process.poll() is not None:  # something else has ended it meanwhile
+            self._end()
         if self.process is None:
             self._start()
         with tempfile.TemporaryDirectory(prefix="perideal_said_") as folder:

@@ -162,6 +162,9 @@ def _refuse_overrides(overrides: Sequence[str], decided: List[str]) -> None:
             raise Error(f"command line: --set '{text}': the study varies that entry.")
 
 
+MISTAKE = "\nperideal: error: "
+
+
 class _Relay:
     """What the program says, passed on as it comes, but for two things that are said in the end: where the results are, and what is wrong."""
 
@@ -169,6 +172,7 @@ class _Relay:
         self.quiet = quiet
         self.has_results = False
         self.mistake = ""
+        self._held_back = ""  # of standard error: the beginning of a mistake, or of something else
         self._threads = [threading.Thread(target=self._follow, args=(pipe, action), daemon=True)
                          for pipe, action in ((process.stdout, self._output), (process.stderr, self._errors))]
         for thread in self._threads:
@@ -178,6 +182,7 @@ class _Relay:
         """Until the program has said all."""
         for thread in self._threads:
             thread.join()
+        print(self._held_back, end="", file=sys.stderr, flush=True)
 
     @staticmethod
     def _follow(pipe, action):
@@ -193,11 +198,17 @@ class _Relay:
             print(text, end="", flush=True)
 
     def _errors(self, text: str) -> None:
-        at = text.find("\nperideal: error: ")
-        if self.mistake or at < 0:
-            at = 0 if self.mistake else len(text)
+        if self.mistake:
+            self.mistake += text
+            return
+        text, self._held_back = self._held_back + text, ""
+        at = text.find(MISTAKE)
+        if at >= 0:
+            self.mistake = text[at:]
+        else:  # it may come in several pieces
+            at = next(k for k in range(max(0, len(text) - len(MISTAKE)), len(text) + 1) if MISTAKE.startswith(text[k:]))
+            self._held_back = text[at:]
         print(text[:at], end="", file=sys.stderr, flush=True)
-        self.mistake += text[at:]
 
 
 def _compute(study: dict, options: Options) -> str:
@@ -226,7 +237,7 @@ def _compute(study: dict, options: Options) -> str:
     if status != 0 and not (status == 1 and relay.has_results):
         print(relay.mistake, end="", file=sys.stderr)
         raise Ended(status if status > 0 else 128 - status)
-    return relay.mistake
+    return relay.mistake or (MISTAKE + "Some rows did not end as they should.\n" if status else "")
 
 
 def run(scene: str, options: Options = Options()) -> str:

@@ -186,11 +186,13 @@ namespace PeriDeal
     beyond.starts           = std::move(found.starts);
     beyond.moments          = std::move(found.moments);
     beyond.springs          = std::move(found.squares);
+    beyond.neighbors.reserve(found.images.size());
     for (const unsigned int image : found.images)
       beyond.neighbors.push_back(ends.node_of_image(image));
     if (may_pack && found.units.size() < BondCode::gone)
       {
         beyond.units = std::move(found.units);
+        beyond.codes.reserve(found.unit_of.size());
         for (const unsigned int unit : found.unit_of)
           beyond.codes.push_back(unit == gone ? BondCode::gone : static_cast<BondCode::Code>(unit));
       }

@@ -71,7 +71,8 @@ namespace PeriDeal
           visit(rows.neighbors[k], rows.moments[k], rows.springs[k], 1.);
         return;
       }
-    const unsigned int i = rows.nodes[row];
+    const unsigned int i   = rows.nodes[row];
+    const double       own = laws.stiffness(i);
     for (std::size_t k = begin; k < end; ++k)
       if (rows.codes[k] != BondCode::gone)
         {
@@ -80,7 +81,7 @@ namespace PeriDeal
           // Of spring and W x e volumes drop out.
           visit(j,
                 unit.moment,
-                bonds.stiffnesses(i, j) / unit.weight,
+                (own + (ends.is_fictitious(j) ? 0. : laws.stiffness(j))) / unit.weight,
                 bonds.volumes_of(rows, i, k));
         }
   }

@@ -103,7 +103,7 @@ namespace PeriDeal
     /** Set `loads`, which are zero, to f(t). */
     virtual void assemble(const double t) const = 0;
 
-    /** To be called once by constructors. */
+    /** By constructors where loads do not vary. */
     void find(const double t) const
     {
       loads = 0.;
