@@ -22,6 +22,7 @@ from perideal.program import call, command, settings
 from perideal.stability.scene import Point as MapPoint, Random, coarse_cells
 from perideal.stability.tables import Result, RandomPoint, describe, stability_csv
 from perideal.work_precision import lattice
+from perideal.work_precision.driver import Relay
 from perideal.work_precision.pareto import Point, cost_at_error, dominates, dominating, front, observed_order, order_of_differences, richardson
 from perideal.words import did_you_mean, full_precision, number_text, readable_count
 
@@ -266,6 +267,13 @@ def errors():
     variables = dict(os.environ, PERIDEAL_EXECUTABLE="/no/such/program", PYTHONPATH=os.path.join(SOURCE_DIR, "python"))
     done = subprocess.run([sys.executable, "-c", "import perideal; perideal.run('x.prm')"], capture_output=True, text=True, env=variables)
     check(done.returncode == 1 and "/no/such/program" in done.stderr, f"no program: {done.stderr}")
+    # What is wrong with rows may come in pieces, and is kept for the end.
+    for words in (["\\nperideal: ", "error: no\\n"], ["row 1\\n", "\\nperideal: error: ", "no\\n"], ["\\nper", "ideal: error: no", "\\n"]):
+        said = subprocess.Popen(["sh", "-c", "; ".join(f"printf '{word}' >&2; sleep 0.1" for word in words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        relay = Relay(said, quiet=True)
+        said.wait()
+        relay.wait()
+        check(relay.mistake == "\nperideal: error: no\n", f"{words}: {relay.mistake!r}")
 
 
 def stopped():

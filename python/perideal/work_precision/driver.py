@@ -165,7 +165,7 @@ def _refuse_overrides(overrides: Sequence[str], decided: List[str]) -> None:
 MISTAKE = "\nperideal: error: "
 
 
-class _Relay:
+class Relay:
     """What the program says, passed on as it comes, but for two things that are said in the end: where the results are, and what is wrong."""
 
     def __init__(self, process: subprocess.Popen, quiet: bool):
@@ -228,7 +228,7 @@ def _compute(study: dict, options: Options) -> str:
         if threading.current_thread() is threading.main_thread():
             before = {number: signal.signal(number, pass_on) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)}
         try:
-            relay = _Relay(process, options.quiet)
+            relay = Relay(process, options.quiet)
             status = process.wait()
             relay.wait()
         finally:
