@@ -112,10 +112,33 @@ namespace PeriDeal
     }
 
 
+    /**
+     * Whether the first process, which may be alone on its machine with the files, can write to
+     * them. Collective.
+     */
+    bool can_write(const Request &request)
+    {
+      int can = 1;
+      for (const std::string &file : {request.output, request.errors})
+        if (is_first() && !file.empty())
+          {
+            const int target = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+            can              = can != 0 && target >= 0 ? 1 : 0;
+            if (target >= 0)
+              close(target);
+          }
+      MPI_Bcast(&can, 1, MPI_INT, 0, communicator);
+      return can != 0;
+    }
+
+
     /** As a program of its own in that directory. */
     Ending execute(const Request                                                 &request,
                    const std::function<Ending(const std::vector<std::string> &)> &perform)
     {
+      if (!can_write(request))
+        throw std::runtime_error("'" + request.output + "' or '" + request.errors +
+                                 "' cannot be written to");
       const Redirection           output(STDOUT_FILENO, request.output);
       const Redirection           errors(STDERR_FILENO, request.errors);
       const std::filesystem::path before = std::filesystem::current_path();

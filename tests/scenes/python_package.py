@@ -239,7 +239,8 @@ def serve():
             check(answer == (0, "", "") and os.path.exists(os.path.join(folder, "here", "summary.json")), f"the working directory: {answer}")
             if processes == 1:
                 server.process.kill()
-                check(server.call(["--version"]).status != 0 and server.call(["--version"]).status == 0, "one that is gone is started again")
+                server.process.wait()
+                check(server.call(["--version"]).status == 0, "one that is gone is started again")
         check(server.process is None, "closed")
     # The protocol itself.
     lines = ["no JSON", "{}", '{"arguments": ["--version"]}', '{"arguments": "run"}', '{"arguments": ["run", "no.prm"]}',
