@@ -49,7 +49,7 @@ namespace ScalarWave
     // What is seen of it.
     PeriDeal::Trip watch(const double t) override;
 
-    /** None of those that are for what diffuses. */
+    /** None of those that are for diffusion. */
     std::vector<std::string> notes() const override;
 
     /** Kinetic and potential energy, and their sum. */

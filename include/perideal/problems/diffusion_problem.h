@@ -16,7 +16,7 @@
 
 namespace PeriDeal
 {
-  /** What diffuses, on the nodes of a model. Functions are collective. */
+  /** The field of a diffusion problem on the nodes of a model. Functions are collective. */
   template <int dim>
   class DiffusionField : public Field<dim>
   {

@@ -5,7 +5,6 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/fe/mapping_q1.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/instantiate.h>
@@ -128,35 +127,13 @@ namespace PeriDeal
       MatrixProduct(mass).vmult(y, x);
   }
 
-  namespace
-  {
-    /** Call visit(local number, place) for the owned unknowns, once for each of their cells. */
-    template <int dim, typename Visit>
-    void for_each_place(const DoFHandler<dim>             &dofs,
-                        const Utilities::MPI::Partitioner &layout,
-                        const Visit                       &visit)
-    {
-      const MappingQ1<dim>                 mapping;
-      std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-      for (const auto &cell : dofs.active_cell_iterators())
-        if (!cell->is_artificial())
-          {
-            cell->get_dof_indices(indices);
-            for (unsigned int i = 0; i < indices.size(); ++i)
-              if (layout.in_local_range(indices[i]))
-                visit(
-                  layout.global_to_local(indices[i]),
-                  mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i)));
-          }
-    }
-  } // namespace
-
 
   template <int dim>
   void FEMOperator<dim>::fill_noise(Vector &vector) const
   {
-    for_each_place(dofs, *layout, [&](const unsigned int i, const Point<dim> &p) {
-      vector.local_element(i) = position_noise(p);
+    for_each_support_point(dofs, [&](const auto dof, const Point<dim> &p) {
+      if (layout->in_local_range(dof))
+        vector(dof) = position_noise(p);
     });
   }
 
@@ -164,9 +141,10 @@ namespace PeriDeal
   template <int dim>
   Point<dim> FEMOperator<dim>::position(const unsigned int local_index) const
   {
+    const auto wanted = layout->local_to_global(local_index);
     Point<dim> found;
-    for_each_place(dofs, *layout, [&](const unsigned int i, const Point<dim> &p) {
-      if (i == local_index)
+    for_each_support_point(dofs, [&](const auto dof, const Point<dim> &p) {
+      if (dof == wanted)
         found = p;
     });
     return found;

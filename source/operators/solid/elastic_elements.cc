@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/fe/mapping_q1.h>
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/matrix_rows.h>
@@ -31,25 +30,6 @@ namespace PeriDeal
 
   namespace
   {
-    /** Where the nodes of elements are, owned ones and ghosts. */
-    template <int dim>
-    void find_support_points(const DoFHandler<dim>             &dofs,
-                             const Utilities::MPI::Partitioner &nodes,
-                             std::vector<Point<dim>>           &points)
-    {
-      const MappingQ1<dim>                 mapping;
-      std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
-      for (const auto &cell : dofs.active_cell_iterators())
-        if (!cell->is_artificial())
-          {
-            cell->get_dof_indices(indices);
-            for (unsigned int i = 0; i < indices.size(); ++i)
-              points[nodes.global_to_local(indices[i])] =
-                mapping.transform_unit_to_real_cell(cell, dofs.get_fe().unit_support_point(i));
-          }
-    }
-
-
     /** Owned nodes on sides and their parts, each once, but for those that hang. */
     template <int dim>
     std::vector<NodeOnSide<dim>> nodes_on_sides(const DoFHandler<dim>             &dofs,
@@ -125,7 +105,9 @@ namespace PeriDeal
       for (unsigned int i = 0; i < positions.size(); ++i)
         positions[i] = zone_bonds->nodes().position(i);
     else
-      find_support_points(dof_handler, *nodes, positions);
+      for_each_support_point(dof_handler, [&](const auto dof, const Point<dim> &p) {
+        positions[nodes->global_to_local(dof)] = p;
+      });
     // Where tips cut in part, ends on sides are none.
     cells.by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
     find_conditions();

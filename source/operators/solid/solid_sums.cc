@@ -118,22 +118,37 @@ namespace PeriDeal
     if (lattice)
       lattice->forces(y.begin(), u, tau);
     const auto tension = [tau](const unsigned int i) { return tau != nullptr ? tau[i] : 0.; };
+    // Of a row; value(j), far_tension(j) of the far ends; take(j, force) is told each bond's.
+    const auto force_of = [&](const BondRows<dim> &rows,
+                              const std::size_t    row,
+                              const auto          &value,
+                              const auto          &far_tension,
+                              const auto          &take) {
+      const unsigned int i = rows.nodes[row];
+      Tensor<1, dim>     sum;
+      visit_parts(
+        rows,
+        row,
+        [&](const unsigned int j, const Tensor<1, dim> &p, const double s, const double w) {
+          const double         size  = LinearPeridynamicSolid::force(s,
+                                                            change_along(p, u + dim * i, value(j)),
+                                                            tension(i) + far_tension(j));
+          const Tensor<1, dim> force = (size * w) * p;
+          sum += force;
+          take(j, force);
+        });
+      return sum;
+    };
     for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
       {
-        const unsigned int i = bonds.body.nodes[row];
-        Tensor<1, dim>     force;
-        visit_parts(
+        const Tensor<1, dim> force = force_of(
           bonds.body,
           row,
-          [&](const unsigned int j, const Tensor<1, dim> &p, const double s, const double w) {
-            const double size =
-              LinearPeridynamicSolid::force(s,
-                                            change_along(p, u + dim * i, u + dim * j),
-                                            tension(i) + tension(j));
-            force += (size * w) * p;
-          });
+          [u](const unsigned int j) { return u + dim * j; },
+          tension,
+          [](const unsigned int, const Tensor<1, dim> &) {});
         for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * i + d) = -force[d];
+          y.local_element(dim * bonds.body.nodes[row] + d) = -force[d];
       }
     if (!ends.images)
       return;
@@ -143,22 +158,16 @@ namespace PeriDeal
     images.begin_forces();
     for (std::size_t row = 0; row < bonds.beyond.nodes.size(); ++row)
       {
-        const unsigned int i = bonds.beyond.nodes[row];
-        Tensor<1, dim>     force;
-        visit_parts(
+        const Tensor<1, dim> force = force_of(
           bonds.beyond,
           row,
-          [&](const unsigned int j, const Tensor<1, dim> &p, const double s, const double w) {
-            const double size = LinearPeridynamicSolid::force(
-              s,
-              change_along(p, u + dim * i, images.value(ends.image(j))),
-              tension(i));
-            const Tensor<1, dim> of_bond = (size * w) * p;
-            force += of_bond;
+          [&](const unsigned int j) { return images.value(ends.image(j)); },
+          [](const unsigned int) { return 0.; },
+          [&](const unsigned int j, const Tensor<1, dim> &of_bond) {
             images.pull(ends.image(j), of_bond);
           });
         for (unsigned int d = 0; d < dim; ++d)
-          y.local_element(dim * i + d) -= force[d];
+          y.local_element(dim * bonds.beyond.nodes[row] + d) -= force[d];
       }
     images.pass_on(y);
   }

@@ -6,8 +6,10 @@
 #include <deal.II/base/partitioner.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/mapping_q1.h>
 
 #include <memory>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -29,5 +31,26 @@ namespace PeriDeal
     return std::make_shared<const dealii::Utilities::MPI::Partitioner>(dofs.locally_owned_dofs(),
                                                                        relevant,
                                                                        dofs.get_communicator());
+  }
+
+
+  /**
+   * Call visit(dof, place) for what cells of this process and around it have, once for each of its
+   * cells. Not collective.
+   */
+  template <int dim, typename Visit>
+  void for_each_support_point(const dealii::DoFHandler<dim> &dofs, const Visit &visit)
+  {
+    const dealii::MappingQ1<dim>                 mapping;
+    const auto                                  &element = dofs.get_fe();
+    std::vector<dealii::types::global_dof_index> indices(element.n_dofs_per_cell());
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          cell->get_dof_indices(indices);
+          for (unsigned int i = 0; i < indices.size(); ++i)
+            visit(indices[i],
+                  mapping.transform_unit_to_real_cell(cell, element.unit_support_point(i)));
+        }
   }
 } // namespace PeriDeal
