@@ -33,7 +33,7 @@ WIDER = {
     "include/perideal/operators/solid/elastic_elements.h": {"ElasticElements": (51, 13, 0)},
     "include/perideal/operators/solid/elastic_operator.h": {"ElasticOperator": (40, 4, 24)},
     "include/perideal/operators/solid/fictitious_images.h": {"FictitiousImages": (21, 13, 0)},
-    "include/perideal/operators/solid/solid_operator.h": {"SolidOperator": (46, 14, 9)},
+    "include/perideal/operators/solid/solid_operator.h": {"SolidOperator": (45, 14, 9)},
     "include/perideal/operators/solid/state_operator.h": {"StateOperator": (44, 6, 0)},
     "include/perideal/operators/solid/stretch_screen.h": {"StretchScreen": (18, 19, 0)},
     "include/perideal/operators/solid/zone_breaking.h": {"ZoneBreaking": (26, 12, 0)},

@@ -301,12 +301,12 @@ namespace PeriDeal
 
       std::vector<BondBreak> breaks() const override
       {
-        return elements->breaks();
+        return elements->brittle() ? elements->breaking_zone()->breaks() : std::vector<BondBreak>();
       }
 
       std::vector<double> damage() const override
       {
-        return elements->damage();
+        return elements->brittle() ? elements->breaking_zone()->damage() : std::vector<double>();
       }
 
       Point<dim> position(const unsigned int node) const override

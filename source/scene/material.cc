@@ -318,21 +318,23 @@ namespace PeriDeal
 
   std::string Material::fault_of_moduli(const double value_a, const double value_b) const
   {
-    const bool second_is_poisson = given_moduli[1] == Modulus::poisson;
+    const bool second_is_poisson = given_moduli.which[1] == Modulus::poisson;
     for (const double value : {value_a, second_is_poisson ? 1. : value_b})
       if (!(value > 0.))
         return "found " + number_text(value) + ", needs a value greater than 0.";
-    const double      poisson = poisson_from(given_moduli[0], value_a, given_moduli[1], value_b);
-    const std::string found   = second_is_poisson ?
-                                  "found " + number_text(value_b) + ", which" :
-                                  name_of(given_moduli[0]) + " " + number_text(value_a) + " and " +
-                                  name_of(given_moduli[1]) + " " + number_text(value_b) +
-                                  " contradict each other: the Poisson ratio would be " +
-                                  number_text(poisson) + ", and it";
-    if (!(poisson > -1. && (may_be_incompressible ? poisson <= 0.5 : poisson < 0.5)))
+    const double poisson =
+      poisson_from(given_moduli.which[0], value_a, given_moduli.which[1], value_b);
+    const std::string found =
+      second_is_poisson ?
+        "found " + number_text(value_b) + ", which" :
+        name_of(given_moduli.which[0]) + " " + number_text(value_a) + " and " +
+          name_of(given_moduli.which[1]) + " " + number_text(value_b) +
+          " contradict each other: the Poisson ratio would be " + number_text(poisson) + ", and it";
+    if (!(poisson > -1. && (given_moduli.may_be_incompressible ? poisson <= 0.5 : poisson < 0.5)))
       return found + " has to be greater than -1 and " +
-             (may_be_incompressible ? "at most 0.5." : "less than 0.5.");
-    const Moduli moduli = moduli_from(given_moduli[0], value_a, given_moduli[1], value_b);
+             (given_moduli.may_be_incompressible ? "at most 0.5." : "less than 0.5.");
+    const Moduli moduli =
+      moduli_from(given_moduli.which[0], value_a, given_moduli.which[1], value_b);
     if (!(moduli.shear > 0.))
       return found + " leaves no shear modulus; give 'Young modulus' with it, or less than 0.5.";
     return "";
@@ -341,7 +343,7 @@ namespace PeriDeal
 
   void Material::parse_moduli(const unsigned int dim, const PlaneState plane)
   {
-    may_be_incompressible = dim == 1 || (dim == 2 && plane == PlaneState::stress);
+    given_moduli.may_be_incompressible = dim == 1 || (dim == 2 && plane == PlaneState::stress);
     std::vector<std::string> given;
     std::vector<Modulus>     which;
     for (unsigned int k = 0; k < modulus_names.size(); ++k)
@@ -367,10 +369,10 @@ namespace PeriDeal
 
     for (unsigned int k = 0; k < 2; ++k)
       {
-        given_moduli[k]        = which[k];
+        given_moduli.which[k]  = which[k];
         const Expression value = bar && k == 1 ? Expression(0.) :
                                                  read(name_of(which[k]), Physics::elasticity);
-        modulus_properties[k]  = phases.property(name_of(which[k]), value);
+        given_moduli.values[k] = phases.property(name_of(which[k]), value);
       }
     for (const char *const name : modulus_names)
       if (text(name).empty() && phases.gives(name))
@@ -381,16 +383,16 @@ namespace PeriDeal
     const int n_regions = static_cast<int>(phases.all().names.size());
     for (int region = -1; region < n_regions; ++region)
       {
-        const Expression &a = modulus_properties[0].formula(region),
-                         &b = modulus_properties[1].formula(region);
+        const Expression &a = given_moduli.values[0].formula(region),
+                         &b = given_moduli.values[1].formula(region);
         if (!a.is_constant() || !b.is_constant())
           continue;
         const std::string fault =
           fault_of_moduli(a.value(dealii::Point<1>()), b.value(dealii::Point<1>()));
         if (fault.empty())
           continue;
-        const std::string first  = name_of(given_moduli[0]),
-                          second = name_of(given_moduli[bar ? 0 : 1]);
+        const std::string first  = name_of(given_moduli.which[0]),
+                          second = name_of(given_moduli.which[bar ? 0 : 1]);
         if (region < 0)
           error(second, fault);
         entry_error((phases.gives(second) ? phases.where(second) : phases.where(first)) +
@@ -405,9 +407,9 @@ namespace PeriDeal
                             const Modulus     b,
                             const Expression &value_b)
   {
-    given_moduli          = {{a, b}};
-    modulus_properties    = {{value_a, value_b}};
-    may_be_incompressible = true; // the laws refuse it where they cannot have it
+    given_moduli.which                 = {{a, b}};
+    given_moduli.values                = {{value_a, value_b}};
+    given_moduli.may_be_incompressible = true; // the laws refuse it where they cannot have it
     if (!uniform_moduli())
       return;
     const std::string fault =
@@ -418,20 +420,20 @@ namespace PeriDeal
 
   bool Material::uniform_moduli() const
   {
-    return modulus_properties[0].is_constant() && modulus_properties[1].is_constant();
+    return given_moduli.values[0].is_constant() && given_moduli.values[1].is_constant();
   }
 
 
   template <int dim>
   Moduli Material::moduli(const dealii::Point<dim> &p) const
   {
-    const double a = modulus_properties[0].value(p), b = modulus_properties[1].value(p);
+    const double a = given_moduli.values[0].value(p), b = given_moduli.values[1].value(p);
     // Constant ones have been checked.
     const std::string fault = uniform_moduli() ? "" : fault_of_moduli(a, b);
     if (!fault.empty())
-      report_formula_error("Entry " + where(name_of(given_moduli[a > 0. ? 1 : 0])) + ", at " +
+      report_formula_error("Entry " + where(name_of(given_moduli.which[a > 0. ? 1 : 0])) + ", at " +
                            point_text(p) + ": " + fault);
-    return moduli_from(given_moduli[0], a, given_moduli[1], b);
+    return moduli_from(given_moduli.which[0], a, given_moduli.which[1], b);
   }
 
 

@@ -185,6 +185,7 @@ namespace PeriDeal
     find_touching(u);
     op.unbalanced(unbalanced, u, t);
     account.begin(u, v, unbalanced, t, before);
+    op.accept(u, t);
     fresh = false;
   }
 
@@ -349,6 +350,7 @@ namespace PeriDeal
                        next,
                        account.kept_back(unbalanced) + energy(u, v).drift - drift);
     change_bonds(u, next);
+    op.accept(u, next);
     span.now = next;
     ++span.n_done;
     tell_step(next);

@@ -168,6 +168,18 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** Steps go on from u. */
+    void accept(ElasticOperator &op, const Vector &u, const double t, LoadingEnergy &energies)
+    {
+      const double before = op.released().by_law;
+      op.accept(u, t);
+      energies.dissipated += op.released().by_law - before;
+    }
+  } // namespace
+
+
   SlowLoading::SlowLoading(ElasticOperator              &op,
                            std::unique_ptr<StaticSolver> solver,
                            const StaticOptions          &options)
@@ -309,7 +321,7 @@ namespace PeriDeal
     op.unbalanced(unbalanced, u, t);
     work_of_forces.begin(unbalanced, t);
     change_bonds(u, t, {});
-    now = t;
+    accept(op, u, now = t, so_far);
   }
 
 
@@ -395,7 +407,7 @@ namespace PeriDeal
         before.change.sadd(-1., 1., u);
         before.any   = true;
         before.start = now;
-        now          = breaking.time;
+        accept(op, u, now = breaking.time, so_far);
         if (now >= breaking.goal)
           break;
         reach(u, before_breaks);

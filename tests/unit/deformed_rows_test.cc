@@ -59,12 +59,13 @@ namespace
   {
     const SolidBonds<dim>     &bonds      = body.states->bonds();
     const BondKinematics<dim> &kinematics = bonds.kinematics;
+    const BondForces<dim>     &forces     = bonds.forces;
     const unsigned int         n          = body.nodes->n_owned();
     Vector                     tau(body.nodes->partitioner()), y;
     body.op().initialize_vector(y);
-    kinematics.find_tensions(tau.begin(), u.begin(), bonds.laws);
+    forces.find_tensions(tau.begin(), u.begin());
     tau.update_ghost_values();
-    kinematics.find_forces(y, u.begin(), tau);
+    forces.find_forces(y, u.begin(), tau);
     double gap = 0., gap_of_tau = 0., energy = 0., stretch = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
@@ -95,8 +96,8 @@ namespace
       {
         EXPECT_LT(largest_of_all(gap_of_tau), 1e-14 * tau.linfty_norm());
       }
-    EXPECT_NEAR(kinematics.energy_of_extensions(u.begin()), energy, 1e-13 * energy);
-    EXPECT_NEAR(kinematics.largest_stretch(u.begin()), largest_of_all(stretch), 1e-14);
+    EXPECT_NEAR(forces.energy_of_extensions(u.begin()), energy, 1e-13 * energy);
+    EXPECT_NEAR(forces.largest_stretch(u.begin()), largest_of_all(stretch), 1e-14);
   }
 
 
@@ -107,20 +108,20 @@ namespace
   template <int dim>
   void check_rows(const Settings &more)
   {
-    const Body<dim>            body = brittle_body<dim>(more), other = brittle_body<dim>(more);
-    const BondKinematics<dim> &kinematics = body.states->bonds().kinematics;
-    Vector                     u          = large_displacements(body), r, mended;
+    const Body<dim>        body = brittle_body<dim>(more), other = brittle_body<dim>(more);
+    const BondForces<dim> &forces = body.states->bonds().forces;
+    Vector                 u      = large_displacements(body), r, mended;
     body.op().initialize_vector(r);
     body.op().initialize_vector(mended);
     expect_plain_sums(body, u);
 
     body.op().unbalanced(mended, u, 0.);
     u.update_ghost_values();
-    EXPECT_EQ(other.states->bonds().kinematics.exceeding(u.begin()), nullptr);
-    ASSERT_NE(kinematics.exceeding(u.begin()), nullptr);
+    EXPECT_EQ(other.states->bonds().forces.exceeding(u.begin()), nullptr);
+    ASSERT_NE(forces.exceeding(u.begin()), nullptr);
     double n_suspects = 0.;
     for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
-      n_suspects += kinematics.exceeding(u.begin())[i];
+      n_suspects += forces.exceeding(u.begin())[i];
     n_suspects = dealii::Utilities::MPI::sum(n_suspects, MPI_COMM_WORLD);
     EXPECT_GT(n_suspects, 0.);
     EXPECT_LT(n_suspects, 0.3 * body.nodes->n_global());

@@ -81,7 +81,8 @@ namespace
     expect_same("diagonal");
     EXPECT_NEAR(coupled.op().energy(x) / alone.op().energy(x_alone), 1., 1e-12);
     EXPECT_NEAR(coupled.op().released_energy() / alone.op().released_energy(), 1., 1e-11);
-    const std::vector<double> a = coupled.elements->damage(), b = alone.states->breaking().damage();
+    const std::vector<double> a = coupled.elements->breaking_zone()->damage(),
+                              b = alone.states->breaking().damage();
     ASSERT_EQ(a.size(), b.size());
     for (unsigned int i = 0; i < a.size(); ++i)
       EXPECT_NEAR(a[i], b[i], 1e-12) << coupled.position(i);

@@ -111,10 +111,10 @@ namespace PeriDeal
       grow(body, u);
       expect_equal(body, built, tolerance);
       if (!body.op().zone_follows_cracks())
-        EXPECT_EQ(body.op().energy_released_by_joining(), 0.);
+        EXPECT_EQ(body.op().released().by_joining, 0.);
       else
         {
-          EXPECT_NE(body.op().energy_released_by_joining(), 0.);
+          EXPECT_NE(body.op().released().by_joining, 0.);
           EXPECT_GT(body.op().size().bonds, n_bonds); // but for those that are cut
         }
     }
@@ -206,8 +206,8 @@ namespace PeriDeal
       });
       const double before = body.op().energy(u);
       grow(body, u);
-      EXPECT_NEAR(body.op().energy_released_by_joining(), 0., 1e-12 * before);
-      EXPECT_GT(body.op().energy_released_by_growth(), 1e-3 * before);
+      EXPECT_NEAR(body.op().released().by_joining, 0., 1e-12 * before);
+      EXPECT_GT(body.op().released().by_growth, 1e-3 * before);
     };
     check(Body<2>(box<2>() + zone + open + growing, ModelKind::coupled));
     check(Body<3>(box<3>() + zone + open + growing_square, ModelKind::coupled));
@@ -232,7 +232,7 @@ namespace PeriDeal
           const auto n_bonds = body.op().size().bonds;
           grow(body, body.values(bumpy_vector<2>));
           expect_equal(body, built, 1e-12);
-          EXPECT_NE(body.op().energy_released_by_joining(), 0.);
+          EXPECT_NE(body.op().released().by_joining, 0.);
           EXPECT_GT(body.op().size().bonds, n_bonds);
         }
   }

@@ -88,9 +88,7 @@ namespace PeriDeal
       body.op().unbalanced(forces, u, 0.);
       const double whole = body.op().energy(u);
       ASSERT_TRUE(body.op().widen_zone(u));
-      EXPECT_NEAR(whole - body.op().energy(u),
-                  body.op().energy_released_by_joining(),
-                  1e-12 * whole);
+      EXPECT_NEAR(whole - body.op().energy(u), body.op().released().by_joining, 1e-12 * whole);
       EXPECT_GT(body.elements->size().bonds, 0U);
       EXPECT_LT(body.elements->bonds().zone_share(), largest_share);
       ASSERT_GT(body.op().break_bonds(u, 0.1), 0U);

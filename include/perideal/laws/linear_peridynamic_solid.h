@@ -35,6 +35,19 @@ namespace PeriDeal
       return law.volumetric * law.dilatation * sum / (q * q * volume);
     }
 
+    /**
+     * What of it the shear modulus multiplies while the bulk modulus stays, in 3D and plane strain,
+     * where c = d (K - 5/3 G) and b = d (d + 2) G.
+     */
+    inline double shear_tension(const StateLaw &law,
+                                const double    q,
+                                const double    volume,
+                                const double    sum)
+    {
+      return -5. / (3. * (law.dilatation + 2.)) * law.extension * law.dilatation * sum /
+             (q * q * volume);
+    }
+
     /** Of both ends of a bond. @param square W x^2 */
     inline double spring(const double stiffnesses, const double square)
     {

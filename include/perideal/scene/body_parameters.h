@@ -81,6 +81,15 @@ namespace PeriDeal
   };
 
 
+  /** Beside elements bonds are a list: they may break, or have another law than the linear one. */
+  template <int dim>
+  bool lists_bonds(const BodyParameters<dim> &body)
+  {
+    return body.material.fracture_energy || body.material.critical_stretch ||
+           body.material.law.kind != SolidLaw::linear;
+  }
+
+
   /**
    * A body with diffusion, as a program describes it: the defaults of a scene, bonds that end at
    * its surface. Conductivity, density and heat capacity are 1 until they are set.

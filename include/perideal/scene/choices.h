@@ -119,6 +119,12 @@ namespace PeriDeal
     bond_based
   };
 
+  /** How the force of a bond follows from its extension. */
+  enum class SolidLaw
+  {
+    linear
+  };
+
   /**
    * By what the stiffness of a bond of the bond-based solid is divided: q of the families of its
    * ends as they are, or of a complete one.

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace PeriDeal
 {
@@ -42,6 +43,12 @@ namespace PeriDeal
       unsigned int seed    = 0;
     };
     std::optional<Scatter> scatter;
+
+    /** How the force of a bond follows from its extension (BondLaw). */
+    struct Law
+    {
+      SolidLaw kind = SolidLaw::linear;
+    } law;
 
     bool uniform_conductivity() const;
 
@@ -106,9 +113,14 @@ namespace PeriDeal
     /** What is wrong with two numbers, or nothing. */
     std::string fault_of_moduli(const double value_a, const double value_b) const;
 
-    std::array<Modulus, 2>          given_moduli{{Modulus::bulk, Modulus::shear}};
-    std::array<MaterialProperty, 2> modulus_properties;
-    bool                            may_be_incompressible = false, needs_storage = true;
+    /** Two of the four. */
+    struct
+    {
+      std::array<Modulus, 2>          which{{Modulus::bulk, Modulus::shear}};
+      std::array<MaterialProperty, 2> values;
+      bool                            may_be_incompressible = false;
+    } given_moduli;
+    bool needs_storage = true;
   };
 
 

@@ -66,7 +66,7 @@ namespace PeriDeal
         throw_if_narrow(own_families);
         extension.emplace(own_families, beyond_sides(body));
       }
-    if (body.material.fracture_energy || body.material.critical_stretch)
+    if (lists_bonds(body))
       {
         // What FamilyZone looks at around the bonds of the corners of a cell, from its centre.
         const double horizon = own_families.weights().horizon(),

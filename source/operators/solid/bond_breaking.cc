@@ -52,7 +52,7 @@ namespace PeriDeal
         });
         limits[i] *= 1. - 1e-9; // what is found by other operations differs by round-off
       }
-    bonds.kinematics.watch(std::move(limits));
+    bonds.forces.watch(std::move(limits));
   }
 
 
@@ -112,7 +112,7 @@ namespace PeriDeal
           overstretched.emplace_back(bond.number, found / limit);
       });
     };
-    const unsigned char *const exceeds = bonds.kinematics.exceeding(u);
+    const unsigned char *const exceeds = bonds.forces.exceeding(u);
     for (unsigned int i = 0; !screen && i < bonds.families.nodes().n_owned(); ++i)
       if (exceeds == nullptr || exceeds[i] != 0)
         look_at_row(i);
@@ -375,6 +375,20 @@ namespace PeriDeal
                             bonds.families.nodes().communicator()) > 0)
       at_first();
     take(false);
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::tell_damage()
+  {
+    if (!bonds.law.any() || !bonds.law->knows_damage())
+      return;
+    Vector                    of_nodes(bonds.families.nodes().partitioner());
+    const std::vector<double> owned = damage();
+    std::copy(owned.begin(), owned.end(), of_nodes.begin());
+    of_nodes.update_ghost_values();
+    bonds.forces.damage.assign(of_nodes.begin(),
+                               of_nodes.begin() + bonds.families.nodes().n_local());
   }
 
 

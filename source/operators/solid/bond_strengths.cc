@@ -83,7 +83,9 @@ namespace PeriDeal
                                const Material      &material,
                                std::vector<double>  of_nodes)
   {
-    nodes                             = std::move(of_nodes);
+    nodes = std::move(of_nodes);
+    if (!material.critical_stretch && !material.fracture_energy)
+      return; // nothing breaks
     const bool              of_energy = !material.critical_stretch;
     const MaterialProperty &strength  = of_energy ? *material.fracture_energy :
                                                     *material.critical_stretch;

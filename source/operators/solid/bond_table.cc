@@ -9,6 +9,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/operators/lattice/bond_form.h>
 #include <perideal/operators/solid/bond_table.h>
+#include <perideal/operators/solid/law_steps.h>
 
 #include <algorithm>
 #include <cmath>
@@ -259,6 +260,28 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    template <int dim, typename FirstOf>
+    BondState::Numbering numbering(const BondRows<dim> &rows, const FirstOf &first_of)
+    {
+      return {[&rows](const std::size_t k) -> std::size_t { return rows.node_of(k); },
+              first_of,
+              [&rows]() { return rows.size(); }};
+    }
+
+
+    template <int dim>
+    BondState::Numbering numbering_beyond(const BondRows<dim> &rows)
+    {
+      return numbering(rows, [&rows](const std::size_t node) -> std::size_t {
+        const auto &nodes = rows.nodes;
+        return rows.starts[std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()];
+      });
+    }
+  } // namespace
+
+
   template <int dim>
   std::vector<BondState::Kept> BondTable<dim>::exchange(Archive        &archive,
                                                         const NodeKeys &keys,
@@ -270,23 +293,13 @@ namespace PeriDeal
         store_row(node);
       return body.starts[row_in_body(node)];
     };
-    const auto first_beyond = [&](const std::size_t node) -> std::size_t {
-      const auto &nodes = beyond.nodes;
-      return beyond.starts[std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()];
-    };
-    const auto numbering = [](const BondRows<dim> &rows, const auto &first_of) {
-      return BondState::Numbering{
-        [&rows](const std::size_t k) -> std::size_t { return rows.node_of(k); },
-        first_of,
-        [&rows]() { return rows.size(); }};
-    };
     std::vector<BondState::Kept> all =
       body.state.exchange(archive, numbering(body, first_in_body), keys, n_first[0]);
     if (!ends.images)
       return all;
     const Archive::Part part(archive, "fictitious nodes");
     for (BondState::Kept &kept :
-         beyond.state.exchange(archive, numbering(beyond, first_beyond), keys, n_first[1]))
+         beyond.state.exchange(archive, numbering_beyond(beyond), keys, n_first[1]))
       {
         kept.number |= of_beyond;
         all.push_back(kept);
@@ -296,7 +309,26 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondTable<dim>::find_springs(const bool full)
+  void exchange_histories(BondTable<dim>    &bonds,
+                          Archive           &archive,
+                          const NodeKeys    &keys,
+                          const unsigned int n)
+  {
+    const auto first = [&](const std::size_t node) {
+      return bonds.body.starts[bonds.row_in_body(node)];
+    };
+    exchange_history(archive, numbering(bonds.body, first), keys, n, bonds.body.nonlinear.history);
+    const Archive::Part part(archive, "fictitious nodes");
+    exchange_history(archive,
+                     numbering_beyond(bonds.beyond),
+                     keys,
+                     n,
+                     bonds.beyond.nonlinear.history);
+  }
+
+
+  template <int dim>
+  void BondTable<dim>::find_springs(const bool full, const unsigned int n_history)
   {
     if (families.cracks().history().changes_ever())
       beyond.squares = beyond.springs;
@@ -311,6 +343,7 @@ namespace PeriDeal
                 0.;
         if (full)
           rows->keep_lengths();
+        rows->nonlinear.history.resize(n_history * rows->size(), 0.);
       }
   }
 
@@ -342,4 +375,5 @@ namespace PeriDeal
 
 
   PERIDEAL_INSTANTIATE_CLASS(class BondTable);
+  PERIDEAL_INSTANTIATE_FUNCTION(exchange_histories);
 } // namespace PeriDeal

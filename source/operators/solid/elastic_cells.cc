@@ -24,6 +24,7 @@ namespace PeriDeal
              QGauss<dim>(fe.degree + 1),
              update_values | update_gradients | update_quadrature_points | update_JxW_values)
     , stiffness(dim * fe.n_dofs_per_cell(), dim * fe.n_dofs_per_cell())
+    , shear(stiffness)
     , thermal(dim * fe.n_dofs_per_cell())
     , mass(fe.n_dofs_per_cell())
     , diagonal(fe.n_dofs_per_cell())
@@ -92,6 +93,7 @@ namespace PeriDeal
     data.values.reinit(cell);
     unknowns_of(cell);
     data.stiffness = 0.;
+    data.shear     = 0.;
     for (dealii::Vector<double> *v : {&data.thermal, &data.mass, &data.diagonal, &data.volume})
       *v = 0.;
     data.thermal_energy = 0.;
@@ -132,6 +134,12 @@ namespace PeriDeal
                     for (unsigned int e = 0; e < dim; ++e)
                       data.stiffness(dim * a + d, dim * b + e) +=
                         (lambda * ga[d] * gb[e] + mu * ga[e] * gb[d]) * JxW;
+                    if (!with_shear)
+                      continue;
+                    data.shear(dim * a + d, dim * b + d) += product;
+                    for (unsigned int e = 0; e < dim; ++e)
+                      data.shear(dim * a + d, dim * b + e) +=
+                        mu * (ga[e] * gb[d] - 2. / 3. * ga[d] * gb[e]) * JxW;
                   }
               }
           }
@@ -159,10 +167,13 @@ namespace PeriDeal
         data.stiffness.vmult(data.thermal, free);
         data.thermal_energy = 0.5 * (free * data.thermal);
       }
+    if (bonds && with_shear)
+      bonds->leave_remainder(cell, data.shear);
     const double factor = by_cracks.kept_of_removed(cell) * factors.of_cell(data.indices);
     if (factor == 1.)
       return;
     data.stiffness *= factor;
+    data.shear *= factor;
     data.thermal *= factor;
     data.thermal_energy *= factor;
   }

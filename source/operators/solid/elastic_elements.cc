@@ -11,6 +11,7 @@
 #include <perideal/operators/parts/event_work.h>
 #include <perideal/operators/parts/lumped_mass.h>
 #include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/operators/solid/law_steps.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -65,6 +66,31 @@ namespace PeriDeal
         }
       return list;
     }
+
+
+    template <int dim>
+    void set_all(ZoneBonds<dim> &bonds, const unsigned int n_owned, const CrackSideFactors &factors)
+    {
+      std::vector<unsigned int> owned(n_owned);
+      std::iota(owned.begin(), owned.end(), 0);
+      bonds.set_rows(owned, factors);
+    }
+
+
+    /** Laws that know it. Collective. */
+    template <int dim>
+    void tell_damage(const ZoneBreaking<dim> &breaking, const Vector &layout, NodalLaw &law)
+    {
+      if (!law.steps->knows_damage())
+        return;
+      Vector                    of_nodes(layout);
+      const std::vector<double> owned = breaking.damage();
+      std::copy(owned.begin(), owned.end(), of_nodes.begin());
+      of_nodes.update_ghost_values();
+      law.damage.assign(of_nodes.begin(),
+                        of_nodes.begin() + of_nodes.locally_owned_size() +
+                          of_nodes.get_partitioner()->n_ghost_indices());
+    }
   } // namespace
 
 
@@ -72,6 +98,7 @@ namespace PeriDeal
   void ElasticElements<dim>::require(const BodyParameters<dim> &body, const bool coupled)
   {
     SolidOperator<dim>::require(body);
+    require_law(body, true, coupled);
     if (coupled)
       return SolidBondsBesideElements<dim>::require(body);
     body.elasticity.refuse(
@@ -95,10 +122,19 @@ namespace PeriDeal
       return hanging.is_hanging(unknown);
     })
   {
-    if (zone_bonds && (body.material.fracture_energy || body.material.critical_stretch))
+    if (body.material.law.kind != SolidLaw::linear)
       {
-        breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->coupling(), dof_handler, body);
-        this->initialize_vector(force_change);
+        Vector layout(unknowns);
+        law = std::make_unique<Law>(Law{NodalLaw(body.material.law, layout), {}, layout, layout});
+        cells.with_shear = law->nodal.relaxes();
+      }
+    if (zone_bonds && lists_bonds(body))
+      {
+        breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->coupling(),
+                                                       dof_handler,
+                                                       body,
+                                                       law ? &law->nodal : nullptr);
+        this->initialize_vector(changes.forces);
       }
     positions.resize(nodes->locally_owned_size() + nodes->n_ghost_indices());
     if (zone_bonds)
@@ -112,6 +148,8 @@ namespace PeriDeal
     cells.by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
     find_conditions();
     assemble(false);
+    if (breaking && law)
+      tell_damage(*breaking, Vector(nodes), law->nodal);
     this->keep_constant_loads();
     if (zone_bonds && body.coupling.exchanges() && !body.cracks.on_faces() &&
         body.elasticity.contact && this->may_part())
@@ -175,6 +213,8 @@ namespace PeriDeal
     if (!thermal_alone)
       {
         stiffness.reinit(pattern(!breaking, true));
+        if (cells.with_shear)
+          law->shear.reinit(pattern(false, false));
         if (cells.scales_beside_cracks())
           cells.find_factors(Vector(nodes));
         mass = 0.;
@@ -189,6 +229,8 @@ namespace PeriDeal
       if (thermal_alone)
         return;
       stiffness.add(hanging, cell.stiffness, cell.unknowns);
+      if (cells.with_shear)
+        law->shear.add(hanging, cell.shear, cell.unknowns);
       make_positive(cell.diagonal, cell.mass);
       for (unsigned int i = 0; i < cell.unknowns.size(); ++i)
         mass(cell.unknowns[i]) += cell.mass(i / dim);
@@ -197,7 +239,7 @@ namespace PeriDeal
     });
     thermal_energy = Utilities::MPI::sum(energy, all);
     if (!thermal_alone && breaking)
-      set_all_bonds();
+      set_all(breaking->bonds, nodes->locally_owned_size(), cells.factors);
     else if (!thermal_alone && zone_bonds)
       n_bonds = zone_bonds->add_to(stiffness.sparse(), &cells.factors);
     if (zone_bonds && this->is_warm())
@@ -225,21 +267,14 @@ namespace PeriDeal
     if (thermal_alone)
       return;
     stiffness.compress();
+    if (cells.with_shear)
+      law->shear.compress();
     mass.compress(VectorOperation::add);
     hanging.condense(mass);
     // Their masters have it; as good as nothing, but a mass.
     hanging.set(mass, std::numeric_limits<double>::epsilon() * mass.l1_norm() / mass.size());
     volumes.compress(VectorOperation::add);
     find_diagonal();
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::set_all_bonds()
-  {
-    std::vector<unsigned int> owned(nodes->locally_owned_size());
-    std::iota(owned.begin(), owned.end(), 0);
-    breaking->bonds.set_rows(owned, cells.factors);
   }
 
 
@@ -251,18 +286,15 @@ namespace PeriDeal
         stiffness_diagonal.local_element(i) = value;
     });
     if (breaking)
-      breaking->bonds.add_diagonal(stiffness_diagonal);
+      for (const unsigned int i : breaking->bonds.nodes())
+        {
+          const Tensor<1, dim> own = breaking->bonds.diagonal_of(i);
+          for (unsigned int d = 0; d < dim; ++d)
+            stiffness_diagonal.local_element(dim * i + d) += own[d];
+        }
     conditions->mask(stiffness_diagonal, 1.);
     if (breaking && breaking->n_broken_pairs() > 0)
-      hold_loose(stiffness_diagonal);
-    else
-      throw_if_isolated();
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::throw_if_isolated() const
-  {
+      return hold_loose(stiffness_diagonal);
     const double                   largest = stiffness_diagonal.linfty_norm();
     const Vector                   held = this->held_unknowns(); // 1 on the diagonal, in any units
     std::string                    message;
@@ -300,11 +332,15 @@ namespace PeriDeal
       energy += u ? cell.energy(*u) : 0.;
       held += cell.thermal_energy;
       for (unsigned int i = 0; u && i < list.size(); ++i)
-        force_change(list[i]) += multiple * cell.force(i, *u);
+        changes.forces(list[i]) += multiple * cell.force(i, *u);
       for (unsigned int i = 0; warms && i < list.size(); ++i)
         thermal_loads(list[i]) += multiple * cell.thermal(i);
       cell.stiffness *= multiple;
       stiffness.add(hanging, cell.stiffness, list);
+      if (!cells.with_shear)
+        return;
+      cell.shear *= multiple;
+      law->shear.add(hanging, cell.shear, list);
     });
     if (zone_bonds && !breaking)
       n_bonds += zone_bonds->add_to(stiffness.sparse(), cells.factors, rows, multiple);
@@ -312,7 +348,7 @@ namespace PeriDeal
       return 0.;
     const std::vector<double> &strains = breaking->thermal_strains();
     energy += breaking->bonds.energy(*u, rows, strains);
-    breaking->bonds.add_forces_of(rows, multiple, force_change, *u);
+    breaking->bonds.add_forces_of(rows, multiple, changes.forces, *u);
     if (warms)
       held += breaking->bonds.add_thermal(thermal_loads, rows, strains, multiple) / multiple;
     thermal_energy += Utilities::MPI::sum(multiple * held, nodes->get_mpi_communicator());
@@ -341,6 +377,8 @@ namespace PeriDeal
     if (breaking)
       breaking->bonds.set_rows(rows, cells.factors);
     stiffness.compress();
+    if (cells.with_shear)
+      law->shear.compress();
     if (this->is_warm())
       assemble(true);
   }
@@ -377,6 +415,8 @@ namespace PeriDeal
     });
     if (breaking && breaking->n_broken_pairs() > 0)
       cells.note_parted();
+    if (breaking && law)
+      tell_damage(*breaking, Vector(nodes), law->nodal);
     find_diagonal();
     this->keep_constant_loads();
   }
@@ -390,11 +430,14 @@ namespace PeriDeal
                                          const std::function<void()>     &make_change)
   {
     const std::vector<Cell> near = cells.near(boxes, of_cells);
-    changes_forces               = true;
-    double gained                = add_parts(near, rows, -1., &u);
+    changes.any                  = true;
+    const double before          = law ? energy(u) : 0.;
+    double       gained          = add_parts(near, rows, -1., &u);
     make_change();
     gained += add_parts(near, rows, 1., &u);
     stiffness.compress();
+    if (cells.with_shear)
+      law->shear.compress();
     if (this->is_warm())
       {
         thermal_loads.compress(VectorOperation::add);
@@ -403,8 +446,34 @@ namespace PeriDeal
       }
     if (breaking->n_broken_pairs() > 0)
       cells.note_parted(&near);
+    const auto mend_diagonal = [&]() {
+      std::vector<unsigned int> touched = rows;
+      for (const unsigned int i : owned_unknowns<dim>(near, *nodes))
+        touched.push_back(i);
+      std::sort(touched.begin(), touched.end());
+      touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+      const Vector held    = this->held_unknowns();
+      const double largest = stiffness_diagonal.linfty_norm();
+      for (const unsigned int i : touched)
+        {
+          const Tensor<1, dim> of_bonds = breaking->bonds.diagonal_of(i);
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double value  = stiffness.diagonal(i, d) + of_bonds[d];
+              const bool   stands = value > 1e-13 * largest;
+              stiffness_diagonal.local_element(dim * i + d) = held.local_element(dim * i + d) > 0. ?
+                                                                1. :
+                                                              stands ? value :
+                                                                       largest;
+            }
+        }
+    };
     if (!this->forgoes_diagonal)
-      mend_diagonal(near, rows);
+      mend_diagonal();
+    if (law)
+      tell_damage(*breaking, Vector(nodes), law->nodal);
+    if (law) // forces and energies that were added are those of the linear one
+      return before - energy(u);
     return contact->change(rows, u) - Utilities::MPI::sum(gained, nodes->get_mpi_communicator());
   }
 
@@ -412,45 +481,18 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::mend_unbalanced(Vector &r, const Vector &u, const double t) const
   {
-    if (!breaking || this->is_warm())
+    if (!breaking || this->is_warm() || law)
       return this->unbalanced(r, u, t);
-    if (!changes_forces)
+    if (!changes.any)
       return;
-    force_change.compress(VectorOperation::add);
-    hanging.condense(force_change);
-    hanging.set(force_change, 0.);
-    r -= force_change;
+    changes.forces.compress(VectorOperation::add);
+    hanging.condense(changes.forces);
+    hanging.set(changes.forces, 0.);
+    r -= changes.forces;
     contact->add_last_forces(r, 1.);
     contact->add_forces(r, u, -1.);
-    force_change   = 0.;
-    changes_forces = false;
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::mend_diagonal(const std::vector<Cell>         &of_cells,
-                                           const std::vector<unsigned int> &rows)
-  {
-    std::vector<unsigned int> touched = rows;
-    for (const unsigned int i : owned_unknowns<dim>(of_cells, *nodes))
-      touched.push_back(i);
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    const Vector held    = this->held_unknowns();
-    const double largest = stiffness_diagonal.linfty_norm();
-    for (const unsigned int i : touched)
-      {
-        const Tensor<1, dim> of_bonds = breaking->bonds.diagonal_of(i);
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const double value                            = stiffness.diagonal(i, d) + of_bonds[d];
-            const bool   stands                           = value > 1e-13 * largest;
-            stiffness_diagonal.local_element(dim * i + d) = held.local_element(dim * i + d) > 0. ?
-                                                              1. :
-                                                            stands ? value :
-                                                                     largest;
-          }
-      }
+    changes.forces = 0.;
+    changes.any    = false;
   }
 
 
@@ -467,7 +509,7 @@ namespace PeriDeal
     if (Utilities::MPI::sum(1. * joining.size(), nodes->get_mpi_communicator()) == 0.)
       return false;
     const std::vector<unsigned int> rows = zone_bonds->nodes_near(boxes);
-    this->released_by_joining += mend_zone(boxes, zone_bonds->reach(), rows, u, [&] {
+    this->released_beside.by_joining += mend_zone(boxes, zone_bonds->reach(), rows, u, [&] {
       breaking->join(joining);
       breaking->bonds.set_rows(rows, cells.factors);
     });
@@ -478,9 +520,9 @@ namespace PeriDeal
   template <int dim>
   bool ElasticElements<dim>::widen_zone(const Vector &u)
   {
-    if (changes_forces)
-      force_change = 0.;
-    changes_forces = false;
+    if (changes.any)
+      changes.forces = 0.;
+    changes.any = false;
     if (!zone_follows_stretches())
       return false;
     const WithGhosts ghosts(u);
@@ -522,15 +564,22 @@ namespace PeriDeal
                                             const NodeKeys              &keys,
                                             const std::function<void()> &at_surrogate)
   {
+    if (law)
+      {
+        archive.exchange("dissipated", this->released_beside.by_law);
+        law->nodal.exchange(archive, keys);
+      }
     if (!breaking)
       return;
-    breaking->exchange(archive, keys, n_broken_of_surrogate, [&] {
-      set_all_bonds();
+    breaking->exchange(archive, keys, [&] {
+      set_all(breaking->bonds, nodes->locally_owned_size(), cells.factors);
       at_surrogate();
     });
     if (!archive.loads())
       return;
     assemble(false);
+    if (law)
+      tell_damage(*breaking, Vector(nodes), law->nodal);
     this->keep_constant_loads();
     if (breaking->n_broken_pairs() > 0)
       cells.note_parted();
@@ -567,7 +616,7 @@ namespace PeriDeal
     this->initialize_vector(loads);
     this->initialize_vector(reactions);
     find_loads(loads, t);
-    multiply(reactions, u);
+    find_forces(reactions, u, t);
     contact->add_forces(reactions, u, 1.);
     std::map<types::boundary_id, Tensor<1, dim>> sums;
     for (const types::boundary_id side : mirrors())
@@ -593,10 +642,63 @@ namespace PeriDeal
     if (breaking || stiffness.shares_rows())
       x.update_ghost_values();
     stiffness.multiply(y, x);
+    if (cells.with_shear)
+      {
+        law->shear.multiply(law->forces, x);
+        y.add(law->nodal.steps->slope({}, nullptr) - 1., law->forces);
+      }
     if (breaking)
-      breaking->bonds.add_forces(y, x);
+      breaking->bonds.add_forces(y, x, true);
     x.set_ghost_state(is_known);
     hanging.set(y, 0.); // the nodes they follow from have all of it
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::find_forces(Vector &y, const Vector &u, const double t) const
+  {
+    if (!law)
+      return multiply(y, u);
+    law->nodal.steps.set_time(t);
+    const WithGhosts ghosts(u);
+    stiffness.multiply(y, u);
+    if (cells.with_shear)
+      {
+        law->nodal.find_change(law->change, u);
+        law->shear.multiply(law->forces, law->change);
+        law->change.set_ghost_state(false);
+        y += law->forces;
+      }
+    if (breaking)
+      breaking->bonds.add_forces(y, u);
+    hanging.set(y, 0.);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::linearize(const Vector &u)
+  {
+    if (!nonlinear() || !breaking)
+      return;
+    const WithGhosts ghosts(u);
+    breaking->bonds.linearize(u);
+  }
+
+
+  template <int dim>
+  void ElasticElements<dim>::accept(const Vector &u, const double t)
+  {
+    if (!law)
+      return;
+    law->nodal.steps.set_time(t);
+    const WithGhosts ghosts(u);
+    const auto   multiply_shear = [&](Vector &y, const Vector &x) { law->shear.multiply(y, x); };
+    const double of_bonds =
+      breaking ? breaking->bonds.energy(u, breaking->bonds.nodes(), {}, true) : 0.;
+    if (cells.with_shear)
+      this->released_beside.by_law += law->nodal.energy(u, true, multiply_shear);
+    this->released_beside.by_law += Utilities::MPI::sum(of_bonds, nodes->get_mpi_communicator());
+    law->nodal.accept(u, t);
   }
 
 
@@ -605,8 +707,22 @@ namespace PeriDeal
   {
     Vector image;
     this->initialize_vector(image);
-    multiply(image, u);
-    return 0.5 * (u * image) - u * thermal_loads + thermal_energy + contact->energy(u);
+    if (!law)
+      {
+        multiply(image, u);
+        return 0.5 * (u * image) - u * thermal_loads + thermal_energy + contact->energy(u);
+      }
+    const WithGhosts ghosts(u);
+    const auto multiply_shear = [&](Vector &y, const Vector &x) { law->shear.multiply(y, x); };
+    stiffness.multiply(image, u);
+    double sum = 0.5 * (u * image);
+    if (cells.with_shear)
+      {
+        multiply_shear(image, u);
+        sum += law->nodal.energy(u, false, multiply_shear) - 0.5 * (u * image);
+      }
+    const double of_bonds = breaking ? breaking->bonds.energy(u, breaking->bonds.nodes(), {}) : 0.;
+    return sum + Utilities::MPI::sum(of_bonds, nodes->get_mpi_communicator()) + contact->energy(u);
   }
 
 

@@ -41,11 +41,11 @@ namespace PeriDeal
   }
 
 
-  void ElasticOperator::keep_temperature_change(const Vector &nodal)
+  void ElasticOperator::keep_temperature_change(const Vector &change)
   {
-    initialize_nodal_vector(nodal_change);
-    nodal_change.copy_locally_owned_data_from(nodal);
-    nodal_change.update_ghost_values();
+    initialize_nodal_vector(nodal.temperature_change);
+    nodal.temperature_change.copy_locally_owned_data_from(change);
+    nodal.temperature_change.update_ghost_values();
   }
 
 
@@ -79,13 +79,13 @@ namespace PeriDeal
   void ElasticOperator::exchange(Archive &archive, const NodeKeys &keys)
   {
     Operator::exchange(archive, keys);
-    bool is_warmed = nodal_change.size() > 0;
+    bool is_warmed = nodal.temperature_change.size() > 0;
     archive.exchange("is warmed", is_warmed);
     if (!is_warmed)
       return;
     Vector change;
     initialize_nodal_vector(change);
-    change.copy_locally_owned_data_from(nodal_change);
+    change.copy_locally_owned_data_from(nodal.temperature_change);
     archive.exchange("temperature change", change, keys);
     if (archive.loads())
       set_temperature_change(change);
@@ -94,7 +94,8 @@ namespace PeriDeal
 
   double ElasticOperator::released_energy() const
   {
-    return released_by_growth + released_by_joining + (brittle() ? break_history()->released : 0.);
+    return released_beside.by_growth + released_beside.by_joining + released_beside.by_law +
+           (brittle() ? break_history()->released : 0.);
   }
 
 

@@ -15,13 +15,17 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  FamilyBonds<dim>::FamilyBonds(Coupling<dim> &coupling, const BodyParameters<dim> &body)
-    : ZoneBonds<dim>(coupling.families())
+  FamilyBonds<dim>::FamilyBonds(Coupling<dim>             &coupling,
+                                const BodyParameters<dim> &body,
+                                const NodalLaw            *law)
+    : ZoneBonds<dim>(coupling.families(), law)
     , body(body)
     , zone(*coupling.breakable())
   {
-    stiffness.reinit(this->families.nodes().partitioner());
-    dilatation.reinit(stiffness);
+    coefficients.stiffness.reinit(this->families.nodes().partitioner());
+    coefficients.dilatation.reinit(coefficients.stiffness);
+    if (law != nullptr && law->relaxes())
+      coefficients.shear.reinit(coefficients.stiffness);
   }
 
 
@@ -63,11 +67,15 @@ namespace PeriDeal
         if (beta > 0. || zone.weight_of(j) > 0.)
           list.push_back({j, zone.is_broken(node, j) ? 0. : w, member.weight, w == 0.});
       }
-    const StateLaw law            = law_of(node);
-    const double   volume         = this->families.nodes().volume(node);
-    stiffness.local_element(node) = q > 0. ? beta * LinearPeridynamicSolid::stiffness(law, q) : 0.;
-    dilatation.local_element(node) =
+    const StateLaw law    = law_of(node); // of the linear solid
+    const double   volume = this->families.nodes().volume(node);
+    coefficients.stiffness.local_element(node) =
+      q > 0. ? beta * LinearPeridynamicSolid::stiffness(law, q) : 0.;
+    coefficients.dilatation.local_element(node) =
       dim == 1 || q == 0. ? 0. : beta * LinearPeridynamicSolid::tension(law, q, volume, 1.);
+    if (coefficients.shear.size() > 0)
+      coefficients.shear.local_element(node) =
+        q > 0. ? beta * LinearPeridynamicSolid::shear_tension(law, q, volume, 1.) : 0.;
     this->set_row(node, list);
   }
 
@@ -79,8 +87,8 @@ namespace PeriDeal
     for (const unsigned int i : of_nodes)
       set_row_of(i);
     this->finish_rows();
-    stiffness.update_ghost_values();
-    dilatation.update_ghost_values();
+    coefficients.stiffness.update_ghost_values();
+    coefficients.dilatation.update_ghost_values();
   }
 
 

@@ -16,8 +16,10 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  PairBonds<dim>::PairBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds)
-    : ZoneBonds<dim>(bonds.families())
+  PairBonds<dim>::PairBonds(const Coupling<dim>     &coupling,
+                            const LatticeBonds<dim> &bonds,
+                            const NodalLaw          *law)
+    : ZoneBonds<dim>(bonds.families(), law)
     , coupling(coupling)
     , of_lattice(bonds)
   {}

@@ -58,7 +58,7 @@ namespace PeriDeal
         })))
       return;
     rows.go_on_beyond(search().on_lattice(sides, completes),
-                      !body.elasticity.has_full_kinematics() &&
+                      !body.elasticity.has_full_kinematics() && !law.any() &&
                         !families.cracks().history().changes_ever());
     // The lattice knows what is complete to the last bit.
     const double complete = rows.complete_weighted;
@@ -98,10 +98,12 @@ namespace PeriDeal
   SolidBonds<dim>::SolidBonds(Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : families(nodes.find_parts(body.boundary_conditions), body)
     , laws(families.nodes(), body)
+    , law(body.material.law)
     , ends(families)
     , rows(families, laws, ends, body)
     , sums(families, ends, rows, laws)
     , kinematics(families, ends, rows, thermal, body.elasticity.has_full_kinematics())
+    , forces(families, ends, rows, laws, law, kinematics)
     , weights_follow(body.elasticity.micromodulus != Micromodulus::constant)
   {
     complete_families(body);
@@ -110,9 +112,8 @@ namespace PeriDeal
     laws.weighted.update_ghost_values();
     if (body.peridynamics.corrects_elastic_bonds())
       correct_surface(body);
-    rows.find_springs(body.elasticity.has_full_kinematics());
+    rows.find_springs(body.elasticity.has_full_kinematics(), law.n_history());
     sums.take_lattice();
-    kinematics.take_positions();
   }
 
 

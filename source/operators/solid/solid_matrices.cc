@@ -336,7 +336,7 @@ namespace PeriDeal
         const double                 p      = bond.moment.norm();
         const double                 all    = 1. + images.sum_of_factors(image);
         const double                 size = bond.spring * p * all + of_dilatations.local_element(i);
-        const double aside = across ? std::abs(bonds.kinematics.stiffness_across(bond)) : 0.;
+        const double aside = across ? std::abs(bonds.forces.stiffness_across(bond)) : 0.;
         rows.local_element(i) += size * p;
         images.for_each_term(image, [&](const auto &term) {
           double largest = 0.;
@@ -359,7 +359,7 @@ namespace PeriDeal
         });
         if (of_tangent && across)
           bonds.rows.for_each_stored(i, [&](const auto &bond) {
-            row += 2. * std::abs(bonds.kinematics.stiffness_across(bond));
+            row += 2. * std::abs(bonds.forces.stiffness_across(bond));
           });
         row += of_dilatations.local_element(i) * sum.norm();
       }

@@ -86,8 +86,8 @@ namespace PeriDeal
   template <int dim>
   void SolidOperator<dim>::set_layout(const Layout &of_nodes)
   {
-    nodes    = of_nodes;
-    unknowns = interleaved(*nodes, dim);
+    nodes = this->nodal.layout = of_nodes;
+    unknowns                   = interleaved(*nodes, dim);
     for (Vector *v : {&mass, &stiffness_diagonal, &thermal_loads, &constant_loads, &scratch})
       initialize_vector(*v);
   }
@@ -175,10 +175,10 @@ namespace PeriDeal
                               "with the same 'End time' in section 'Time'."));
         archive.exchange("cracks of", time);
         archive.exchange("cracks of the surrogate", latest.cracks_of);
-        archive.exchange("released by growth", this->released_by_growth);
+        archive.exchange("released by growth", this->released_beside.by_growth);
       }
     if (history.changes_ever() || this->brittle()) // a zone follows cracks, or stretches
-      archive.exchange("released by joining", this->released_by_joining);
+      archive.exchange("released by joining", this->released_beside.by_joining);
     const auto keep_surrogate = [&]() {
       if (!latest.is_made)
         return;
@@ -213,14 +213,14 @@ namespace PeriDeal
         if (join_zone(change) && u)
           {
             const double joined = this->energy(*u);
-            this->released_by_joining += before - joined;
+            this->released_beside.by_joining += before - joined;
             before = joined;
           }
         apply_change(change, u == nullptr);
         contact->renew();
         if (u)
           update_contact(*u);
-        this->released_by_growth += u ? before - this->energy(*u) : 0.;
+        this->released_beside.by_growth += u ? before - this->energy(*u) : 0.;
       }
     catch (const UserError &fault)
       {
@@ -295,7 +295,7 @@ namespace PeriDeal
   void SolidOperator<dim>::unbalanced(Vector &r, const Vector &u, const double t) const
   {
     ++this->applications;
-    find_forces(r, u);
+    find_forces(r, u, t);
     contact->add_forces(r, u, 1.);
     if (loads_vary)
       find_loads(scratch, t);

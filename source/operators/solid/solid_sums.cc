@@ -67,8 +67,15 @@ namespace PeriDeal
     const std::size_t begin = rows.starts[row], end = rows.starts[row + 1];
     if (!rows.is_packed())
       {
-        for (std::size_t k = begin; k < end; ++k)
-          visit(rows.neighbors[k], rows.moments[k], rows.springs[k], 1.);
+        if (!rows.nonlinear.slopes.empty())
+          for (std::size_t k = begin; k < end; ++k)
+            visit(rows.neighbors[k],
+                  rows.moments[k],
+                  rows.nonlinear.slopes[k] * rows.springs[k],
+                  1.);
+        else
+          for (std::size_t k = begin; k < end; ++k)
+            visit(rows.neighbors[k], rows.moments[k], laws.slope * rows.springs[k], 1.);
         return;
       }
     const unsigned int i   = rows.nodes[row];
@@ -101,7 +108,7 @@ namespace PeriDeal
                   [&](const unsigned int j, const Tensor<1, dim> &p, const double, const double w) {
                     sum += w * change_along(p, own, value(j));
                   });
-      return laws.tension(rows.nodes[row], sum);
+      return laws.tangent_tension(rows.nodes[row], sum);
     };
     for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
       tau[bonds.body.nodes[row]] =

@@ -53,7 +53,7 @@ namespace PeriDeal
           const double         x2     = xi.norm_square();
           const double         weight = full ? kinematics.length(bond) / std::sqrt(x2) :
                                                (bond.moment * xi) / x2; // W
-          const double product = bond.spring * kinematics.extension_moment(u.begin(), i, bond);
+          const double product = bond.spring * bonds.forces.effective_moment(u.begin(), i, bond);
           gradient += weight * outer_product(eta, xi);
           shape += weight * outer_product(xi, xi);
           // V_i V_j t/x of this end, or with several phases the mean of both; of a fictitious node

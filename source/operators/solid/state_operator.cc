@@ -40,6 +40,7 @@ namespace PeriDeal
     conditions->mask(stiffness_diagonal, 1.);
     find_thermal_strains();
     make_contact();
+    breakage.tell_damage();
   }
 
 
@@ -48,9 +49,10 @@ namespace PeriDeal
   {
     if (!body.elasticity.contact)
       return;
-    if (!nonlinear() && this->may_part())
+    const bool full = solid.kinematics.is_full();
+    if (!full && this->may_part())
       this->set_contact(make_crack_contact(solid, body, this->nodes));
-    if (nonlinear() && !body.elasticity.is_static())
+    if (full && !body.elasticity.is_static())
       this->set_contact(make_short_range_contact(solid, body));
   }
 
@@ -93,6 +95,7 @@ namespace PeriDeal
       [&](const unsigned int i) { return this->thermal_strain_at(i); },
       nodes.communicator());
     solid.kinematics.take_thermal_strains();
+    solid.forces.forget_exceeding();
     this->set_contact_strains();
     find_thermal_loads();
   }
@@ -101,11 +104,11 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_thermal_loads()
   {
-    if (solid.thermal.any() && !nonlinear()) // with full kinematics it is in the extensions
+    if (solid.thermal.any() && !solid.forces.is_bond_by_bond()) // else it is in the extensions
       {
         scratch = 0.;
         find_tensions(scratch, true);
-        solid.kinematics.find_forces(thermal_loads, scratch.begin(), tau);
+        solid.forces.find_forces(thermal_loads, scratch.begin(), tau);
         thermal_loads *= -1.;
         if (solid.ends.images)
           solid.ends.images->keep_forces();
@@ -120,7 +123,7 @@ namespace PeriDeal
     if (!solid.laws.volumetric)
       return;
     if (strained)
-      solid.kinematics.find_tensions(tau.begin(), u.begin(), solid.laws);
+      solid.forces.find_tensions(tau.begin(), u.begin());
     else
       solid.sums.find_tensions(tau.begin(), u.begin());
     tau.update_ghost_values();
@@ -142,8 +145,8 @@ namespace PeriDeal
   {
     x.update_ghost_values();
     sum_forces(y, x, true);
-    if (nonlinear())
-      solid.kinematics.add_geometric_forces(y, x.begin());
+    if (solid.kinematics.is_full())
+      solid.forces.add_geometric_forces(y, x.begin());
     x.set_ghost_state(false);
   }
 
@@ -159,16 +162,19 @@ namespace PeriDeal
 
 
   template <int dim>
-  void StateOperator<dim>::find_forces(Vector &y, const Vector &u) const
+  void StateOperator<dim>::find_forces(Vector &y, const Vector &u, const double t) const
   {
-    if (!nonlinear())
+    if (!solid.forces.is_bond_by_bond())
       {
         multiply(y, u);
         return;
       }
+    solid.law.set_time(t);
+    if (solid.law.any() && solid.law->is_linear())
+      solid.laws.slope = solid.law->slope({}, nullptr);
     u.update_ghost_values();
     find_tensions(u, true);
-    solid.kinematics.find_forces(y, u.begin(), tau);
+    solid.forces.find_forces(y, u.begin(), tau);
     u.set_ghost_state(false);
   }
 
@@ -180,7 +186,7 @@ namespace PeriDeal
       return;
     u.update_ghost_values();
     find_tensions(u, true);
-    solid.kinematics.linearize(u.begin(), tau);
+    solid.forces.linearize(u.begin(), tau);
     u.set_ghost_state(false);
     contact->linearize(u);
   }
@@ -192,7 +198,7 @@ namespace PeriDeal
     if (!nonlinear())
       return 0.;
     u.update_ghost_values();
-    const double largest = solid.kinematics.largest_stretch(u.begin());
+    const double largest = solid.forces.largest_stretch(u.begin());
     u.set_ghost_state(false);
     return largest;
   }
@@ -215,7 +221,7 @@ namespace PeriDeal
     this->initialize_vector(all_loads);
     this->initialize_vector(reactions);
     find_loads(all_loads, t);
-    find_forces(reactions, u);
+    find_forces(reactions, u, t);
     contact->add_forces(reactions, u, 1.);
     reactions -= all_loads;
     std::map<types::boundary_id, Tensor<1, dim>> sums;
@@ -238,9 +244,11 @@ namespace PeriDeal
   double StateOperator<dim>::energy(const Vector &u) const
   {
     const Nodes<dim> &nodes = solid.families.nodes();
+    if (solid.law.any())
+      return solid.forces.energy_of(solid.rows.body.nodes, u) + contact->energy(u);
     u.update_ghost_values();
     find_tensions(u, solid.kinematics.is_strained());
-    double sum = solid.kinematics.energy_of_extensions(u.begin());
+    double sum = solid.forces.energy_of_extensions(u.begin());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const StateLaw &law = solid.laws[i];
@@ -260,7 +268,7 @@ namespace PeriDeal
   NodalTensors<dim> StateOperator<dim>::tensors(const Vector &u) const
   {
     u.update_ghost_values();
-    find_tensions(u, solid.kinematics.is_strained());
+    find_tensions(u, solid.kinematics.is_strained() || solid.law.any());
     return nodal_tensors(solid, u, tau);
   }
 
@@ -268,10 +276,11 @@ namespace PeriDeal
   template <int dim>
   double StateOperator<dim>::largest_row(const Vector &of_dilatations,
                                          const bool    of_tangent,
-                                         const double  factor) const
+                                         double        factor) const
   {
     const Vector rows    = find_row_sums(solid, of_dilatations, of_tangent);
     double       largest = 0.;
+    factor *= Utilities::MPI::max(solid.forces.largest_slope(), rows.get_mpi_communicator());
     for (unsigned int i = 0; i < rows.locally_owned_size(); ++i)
       {
         const double row = rows.local_element(i) + (of_tangent ? contact->row_bound(i) : 0.);
@@ -323,6 +332,8 @@ namespace PeriDeal
   template <int dim>
   Inversion StateOperator<dim>::inverted(const Vector &u) const
   {
+    if (solid.law.any() && !solid.kinematics.is_full()) // displacements may be of any size
+      return {};
     const Nodes<dim> &nodes  = solid.families.nodes();
     const auto       &layout = *nodes.partitioner();
     if (corners.empty())
@@ -357,8 +368,8 @@ namespace PeriDeal
       std::llround(Utilities::MPI::sum(static_cast<double>(rows.body.size()) * (dim + 1.), all));
     size.memory = solid.families.memory_consumption() + breakage.memory_consumption() +
                   solid.laws.memory_consumption() + solid.thermal.memory_consumption() +
-                  solid.kinematics.memory_consumption() + rows.memory_consumption() +
-                  solid.sums.memory_consumption() +
+                  solid.kinematics.memory_consumption() + solid.forces.memory_consumption() +
+                  rows.memory_consumption() + solid.sums.memory_consumption() +
                   (solid.ends.images ? solid.ends.images->memory_consumption() : 0) +
                   contact->memory_consumption();
     size.form = solid.sums.has_lattice() ? "lattice" : "stored";
@@ -367,27 +378,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  double StateOperator<dim>::energy_of(const std::vector<unsigned int> &of_nodes,
-                                       const Vector                    &u) const
+  void StateOperator<dim>::accept(const Vector &u, const double t)
   {
+    if (!solid.law.any())
+      return;
+    solid.law.set_time(t);
+    this->released_beside.by_law += solid.forces.energy_of(solid.rows.body.nodes, u, true);
     u.update_ghost_values();
-    solid.ends.find(u.begin());
-    double sum = 0.;
-    for (const unsigned int i : of_nodes)
-      {
-        double of_node = 0., own = 0.; // sum of W x e
-        solid.rows.for_each(i, [&](const auto &bond) {
-          const double product = solid.kinematics.extension_moment(u.begin(), i, bond);
-          own += product;
-          of_node += (solid.ends.is_fictitious(bond.neighbor) ? 1. : 0.5) *
-                     LinearPeridynamicSolid::bond_energy(bond.spring, product);
-        });
-        if (solid.laws.volumetric)
-          of_node += LinearPeridynamicSolid::node_energy(solid.laws.tension(i, own), own);
-        sum += of_node;
-      }
+    solid.forces.accept(u.begin());
     u.set_ghost_state(false);
-    return Utilities::MPI::sum(sum, solid.families.nodes().communicator());
+    solid.law.accept(t);
   }
 
 
@@ -458,7 +458,7 @@ namespace PeriDeal
       }
     for (const unsigned int i : losing)
       {
-        const Tensor<1, dim> force = solid.kinematics.force_on(i, u.begin(), tau);
+        const Tensor<1, dim> force = solid.forces.force_on(i, u.begin(), tau);
         for (unsigned int d = 0; d < dim; ++d)
           r.local_element(dim * i + d) = scratch.local_element(dim * i + d) + force[d];
       }
@@ -481,7 +481,7 @@ namespace PeriDeal
             rows.insert(member.neighbor);
       }
     const std::vector<unsigned int> list(rows.begin(), rows.end());
-    solid.kinematics.find_forces_of(list, r.begin(), u.begin(), tau);
+    solid.forces.find_forces_of(list, r.begin(), u.begin(), tau);
     for (const unsigned int i : list)
       for (unsigned int k = dim * i; k < dim * (i + 1); ++k)
         r.local_element(k) = scratch.local_element(k) - r.local_element(k);
@@ -495,8 +495,8 @@ namespace PeriDeal
     const std::vector<unsigned int> &losing = breakage.nodes_at_work();
     const double n_losing = Utilities::MPI::sum(1. * losing.size(), nodes.communicator());
     double       hinder   = n_losing > 0.1 * nodes.n_global() ? 1. : 0.;
-    if (nonlinear() ? solid.ends.images != nullptr :
-                      !solid.sums.has_lattice() || solid.thermal.any())
+    if (solid.law.any() || (nonlinear() ? solid.ends.images != nullptr :
+                                          !solid.sums.has_lattice() || solid.thermal.any()))
       hinder = 1.;
     for (const unsigned int i : losing)
       {
@@ -532,11 +532,18 @@ namespace PeriDeal
                                                      const double  share)
   {
     const unsigned long long before = this->n_broken_bonds();
-    const auto               change =
-      breakage.break_bonds(u, t, share, [&]() { return energy_of(breakage.nodes_at_work(), u); });
+    const auto               change = breakage.break_bonds(u, t, share, [&]() {
+      return solid.forces.energy_of(breakage.nodes_at_work(), u);
+    });
     if (!change)
       return 0;
+    // Laws that know damage take energy from bonds that are whole, too.
+    const bool   weakens = solid.law.any() && solid.law->knows_damage();
+    const auto  &all     = solid.rows.body.nodes;
+    const double stored  = weakens ? solid.forces.energy_of(all, u) : 0.;
     apply_change(*change, true);
+    if (weakens)
+      breakage.add_released(stored - solid.forces.energy_of(all, u));
     breakage.add_released(contact->change(change->nodes, u));
     return this->n_broken_bonds() - before;
   }
@@ -561,6 +568,7 @@ namespace PeriDeal
     conditions->mask(stiffness_diagonal, 1.);
     if (solid.thermal.any())
       find_thermal_loads();
+    breakage.tell_damage();
   }
 
 
@@ -575,6 +583,13 @@ namespace PeriDeal
     });
     if (archive.loads() && this->brittle())
       follow_bonds();
+    if (!solid.law.any())
+      return;
+    const Archive::Part part(archive, "law");
+    solid.law.exchange(archive);
+    archive.exchange("dissipated", this->released_beside.by_law);
+    if (solid.law.n_history() > 0)
+      exchange_histories(solid.rows, archive, keys, solid.law.n_history());
   }
 
 

@@ -18,8 +18,9 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  ZoneBonds<dim>::ZoneBonds(const Families<dim> &bonds_of_zone)
+  ZoneBonds<dim>::ZoneBonds(const Families<dim> &bonds_of_zone, const NodalLaw *law)
     : families(bonds_of_zone)
+    , law(law)
     , rows(families.nodes().n_owned())
   {
     for (const FamilyMember<dim> &member : families.weights().members())
@@ -85,7 +86,8 @@ namespace PeriDeal
         packed.insert(packed.end(), bonds.begin() + row.first, bonds.begin() + row.first + row.n);
         row.first = packed.size() - row.n;
       }
-    bonds  = std::move(packed);
+    bonds = std::move(packed);
+    coefficients.slopes.clear(); // until the next linearize()
     unused = 0;
   }
 
@@ -97,18 +99,6 @@ namespace PeriDeal
     for (std::size_t k = row.first; k < row.first + row.n; ++k)
       if (bonds[k].neighbor == neighbor)
         bonds[k].strength = 0.;
-  }
-
-
-  template <int dim>
-  void ZoneBonds<dim>::add_diagonal(Vector &diagonal) const
-  {
-    for (const unsigned int i : with_rows)
-      {
-        const Tensor<1, dim> own = diagonal_of(i);
-        for (unsigned int d = 0; d < dim; ++d)
-          diagonal.local_element(dim * i + d) += own[d];
-      }
   }
 
 
@@ -127,21 +117,48 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool ZoneBonds<dim>::find_tensions(const double *u, const double *thermal) const
+  void ZoneBonds<dim>::linearize(const Vector &u)
   {
-    if (dim == 1 || dilatation.size() == 0)
+    coefficients.slopes.assign(bonds.size(), 1.);
+    for (const unsigned int i : with_rows)
+      for (std::size_t k = rows[i].first; k < rows[i].first + rows[i].n; ++k)
+        {
+          const unsigned int    j  = bonds[k].neighbor;
+          const Tensor<1, dim> &xi = vectors[bonds[k].vector];
+          coefficients.slopes[k] =
+            law->steps->slope(law->values(i, j, xi, change(i, bonds[k], u.begin(), nullptr)),
+                              law->history(i, j, xi));
+        }
+  }
+
+
+  template <int dim>
+  bool ZoneBonds<dim>::find_tensions(const double *u,
+                                     const double *thermal,
+                                     const bool    of_tangent) const
+  {
+    if (dim == 1 || coefficients.dilatation.size() == 0)
       return false;
     if (tensions.size() == 0)
-      tensions.reinit(dilatation);
+      tensions.reinit(coefficients.dilatation);
+    const bool   relaxes = law != nullptr && law->relaxes();
+    const double slope   = relaxes ? law->steps->slope({}, nullptr) : 1.;
     for (const unsigned int i : with_rows)
       {
-        double       sum = 0.;
-        const double a   = dilatation.local_element(i);
-        if (a != 0.)
-          for_each(i, [&](const Bond &bond, const Tensor<1, dim> &) {
-            sum += bond.strength * change(i, bond, u, thermal);
+        double       sum = 0., beside = 0.;
+        const double a = coefficients.dilatation.local_element(i);
+        if (a != 0. || relaxes)
+          for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
+            const double c = change(i, bond, u, thermal);
+            sum += bond.strength * c;
+            if (relaxes && of_tangent)
+              beside += bond.strength * (slope - 1.) * c;
+            else if (relaxes)
+              beside += bond.strength * (law->effective(i, bond.neighbor, xi, c) - c);
           });
         tensions.local_element(i) = a * sum;
+        if (relaxes)
+          tensions.local_element(i) += coefficients.shear.local_element(i) * beside;
       }
     tensions.update_ghost_values();
     return true;
@@ -153,16 +170,26 @@ namespace PeriDeal
                                      const double                     multiple,
                                      Vector                          &y,
                                      const double                    *u,
-                                     const double                    *thermal) const
+                                     const double                    *thermal,
+                                     const bool                       of_tangent) const
   {
-    const double *const tau = find_tensions(u, thermal) ? tensions.begin() : nullptr;
+    const double *const tau = find_tensions(u, thermal, of_tangent) ? tensions.begin() : nullptr;
+    const double        slope =
+      of_tangent && law != nullptr && law->steps->is_linear() ? law->steps->slope({}, nullptr) : 1.;
+    const auto effective = [&](const unsigned int i, const Bond &bond, const Tensor<1, dim> &xi) {
+      const double c = change(i, bond, u, thermal);
+      if (law != nullptr && !of_tangent)
+        return law->effective(i, bond.neighbor, xi, c);
+      const std::size_t k = &bond - bonds.data();
+      return c * (of_tangent && k < coefficients.slopes.size() ? coefficients.slopes[k] : slope);
+    };
     for (const unsigned int i : of_nodes)
       {
         Tensor<1, dim> sum;
         for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
           sum += bond.strength *
                  LinearPeridynamicSolid::force(spring(i, bond),
-                                               change(i, bond, u, thermal),
+                                               effective(i, bond, xi),
                                                tau != nullptr ? tau[i] + tau[bond.neighbor] : 0.) *
                  xi;
         });
@@ -175,23 +202,44 @@ namespace PeriDeal
   template <int dim>
   double ZoneBonds<dim>::energy(const double                    *u,
                                 const std::vector<unsigned int> &of_nodes,
-                                const double                    *thermal) const
+                                const double                    *thermal,
+                                const bool                       dissipated) const
   {
-    double sum = 0.;
+    double              sum = 0.;
+    BondValues          of_node{0., 1.};
+    std::vector<double> histories(law != nullptr ? law->histories.size() : 0);
     for (const unsigned int i : of_nodes)
       {
         double all = 0.;
+        std::fill(histories.begin(), histories.end(), 0.);
         for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
           const double c = change(i, bond, u, thermal);
           const double own =
-            stiffness.size() == 0 ?
+            coefficients.stiffness.size() == 0 ?
               0.5 :
-              LinearPeridynamicSolid::spring(stiffness.local_element(i), xi.norm_square());
+              LinearPeridynamicSolid::spring(coefficients.stiffness.local_element(i),
+                                             xi.norm_square());
           all += bond.strength * c;
-          sum += bond.strength * LinearPeridynamicSolid::bond_energy(own, c);
+          if (law == nullptr)
+            {
+              sum += bond.strength * LinearPeridynamicSolid::bond_energy(own, c);
+              return;
+            }
+          const double *const before = law->history(i, bond.neighbor, xi);
+          sum += bond.strength * own *
+                 law->steps->energy(law->values(i, bond.neighbor, xi, c), before, dissipated);
+          for (unsigned int k = 0; k < histories.size(); ++k)
+            histories[k] += bond.strength * before[k];
         });
-        if (dilatation.size() > 0)
-          sum += LinearPeridynamicSolid::node_energy(dilatation.local_element(i) * all, all);
+        if (coefficients.dilatation.size() > 0 && !dissipated)
+          sum += LinearPeridynamicSolid::node_energy(coefficients.dilatation.local_element(i) * all,
+                                                     all);
+        if (law == nullptr || !law->relaxes())
+          continue;
+        of_node.product = all;
+        sum += coefficients.shear.local_element(i) *
+               (law->steps->energy(of_node, histories.data(), dissipated) -
+                (dissipated ? 0. : 0.5 * all * all));
       }
     return sum;
   }
@@ -201,7 +249,7 @@ namespace PeriDeal
   Tensor<1, dim> ZoneBonds<dim>::diagonal_of(const unsigned int node) const
   {
     const auto a = [this](const unsigned int j) {
-      return dilatation.size() > 0 ? dilatation.local_element(j) : 0.;
+      return coefficients.dilatation.size() > 0 ? coefficients.dilatation.local_element(j) : 0.;
     };
     Tensor<1, dim> sum, own;
     for_each(node, [&](const Bond &bond, const Tensor<1, dim> &xi) {
@@ -238,8 +286,9 @@ namespace PeriDeal
           all += bond.strength * size(xi);
           own += bond.strength * xi;
         });
-        if (dilatation.size() > 0)
-          of_tensions.local_element(i) = std::abs(dilatation.local_element(i)) * (all + size(own));
+        if (coefficients.dilatation.size() > 0)
+          of_tensions.local_element(i) =
+            std::abs(coefficients.dilatation.local_element(i)) * (all + size(own));
       }
     of_tensions.update_ghost_values();
     for (const unsigned int i : with_rows)
@@ -296,17 +345,19 @@ namespace PeriDeal
     return bonds.capacity() * sizeof(Bond) + rows.capacity() * sizeof(Row) +
            with_rows.capacity() * sizeof(unsigned int) +
            vectors.capacity() * sizeof(Tensor<1, dim>) +
-           (stiffness.size() > 0 ? 3 * stiffness.memory_consumption() : 0);
+           (coefficients.stiffness.size() > 0 ? 3 * coefficients.stiffness.memory_consumption() :
+                                                0);
   }
 
 
   template <int dim>
   std::unique_ptr<ZoneBonds<dim>> make_zone_bonds(Coupling<dim>             &coupling,
-                                                  const BodyParameters<dim> &body)
+                                                  const BodyParameters<dim> &body,
+                                                  const NodalLaw            *law)
   {
     if (const auto *lattice = dynamic_cast<const LatticeBonds<dim> *>(coupling.breakable()))
-      return std::make_unique<PairBonds<dim>>(coupling, *lattice);
-    return std::make_unique<FamilyBonds<dim>>(coupling, body);
+      return std::make_unique<PairBonds<dim>>(coupling, *lattice, law);
+    return std::make_unique<FamilyBonds<dim>>(coupling, body, law);
   }
 
 

@@ -64,14 +64,20 @@ namespace PeriDeal
   template <int dim>
   ZoneBreaking<dim>::ZoneBreaking(Coupling<dim>             &coupling,
                                   const DoFHandler<dim>     &dofs,
-                                  const BodyParameters<dim> &body)
-    : own_bonds(make_zone_bonds(coupling, body))
+                                  const BodyParameters<dim> &body,
+                                  const NodalLaw            *law)
+    : own_bonds(make_zone_bonds(coupling, body, law))
     , bonds(*own_bonds)
     , zone(*coupling.breakable())
     , nodes(zone.families_of_bonds().nodes())
     , share_of_zone(body.coupling.follows_stretches() ? body.coupling.zone_share : 0.)
   {
-    critical.set(zone.families_of_bonds(), body.material, bonds.critical_stretches(body));
+    history.is_possible = body.material.fracture_energy || body.material.critical_stretch;
+    critical.set(zone.families_of_bonds(),
+                 body.material,
+                 history.is_possible ?
+                   bonds.critical_stretches(body) :
+                   std::vector<double>(nodes.n_local(), std::numeric_limits<double>::infinity()));
     if (share_of_zone > 0.)
       find_cells(dofs);
   }
@@ -393,18 +399,19 @@ namespace PeriDeal
   template <int dim>
   void ZoneBreaking<dim>::keep_zone()
   {
-    kept_zone.resize(nodes.n_owned());
+    kept_zone.n_broken = broken.size();
+    kept_zone.weights.resize(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      kept_zone[i] = zone.weight_of(i);
+      kept_zone.weights[i] = zone.weight_of(i);
   }
 
 
   template <int dim>
   void ZoneBreaking<dim>::exchange(Archive                     &archive,
                                    const NodeKeys              &keys,
-                                   std::size_t                 &n_first,
                                    const std::function<void()> &at_first)
   {
+    std::size_t &n_first = kept_zone.n_broken;
     // Pairs by the key of their first node and the place of the second one in its row, which is
     // that of all members of the family: the same on all processes.
     history.exchange(archive);
@@ -414,7 +421,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_owned() && !archive.loads(); ++i)
       {
         now.local_element(i)           = zone.weight_of(i);
-        at_first_zone.local_element(i) = kept_zone.empty() ? 0. : kept_zone[i];
+        at_first_zone.local_element(i) = kept_zone.weights.empty() ? 0. : kept_zone.weights[i];
       }
     archive.exchange("zone", now, keys);
     archive.exchange("zone at first", at_first_zone, keys);
@@ -526,13 +533,15 @@ namespace PeriDeal
   {
     const CouplingControl &coupling = body.coupling;
     const Material        &material = body.material;
-    const std::string entry  = material.fracture_energy ? "Fracture energy" : "Critical stretch";
-    const bool        breaks = material.fracture_energy || material.critical_stretch;
+    const std::string      entry    = material.fracture_energy  ? "Fracture energy" :
+                                      material.critical_stretch ? "Critical stretch" :
+                                                                  "Law";
+    const bool             breaks   = material.fracture_energy || material.critical_stretch;
     coupling.refuse(
       coupling.follows_stretches() && !breaks,
       "Zone",
       "'follow' is for bonds that may break: give section 'Material' a 'Fracture energy' or a 'Critical stretch', or use 'cracks: 1'.");
-    if (!breaks)
+    if (!lists_bonds(body))
       return;
     coupling.refuse(
       coupling.splices(),

@@ -112,6 +112,9 @@ namespace PeriDeal
      */
     std::vector<double> damage() const;
 
+    /** BondForces::damage, for laws that know it, is that of the bonds as they are. Collective. */
+    void tell_damage();
+
     std::size_t memory_consumption() const
     {
       return critical.memory_consumption() + loaded_side.capacity() * sizeof(unsigned int) +

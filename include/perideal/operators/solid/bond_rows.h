@@ -57,17 +57,17 @@ namespace PeriDeal
           springs[k] = 0.;
           moments[k] = dealii::Tensor<1, dim>();
         }
-      if (!lengths.empty())
-        lengths[k] = across[k] = 0.;
+      if (!nonlinear.lengths.empty())
+        nonlinear.lengths[k] = nonlinear.across[k] = 0.;
     }
 
     /** W x of all bonds of the undeformed body, which full kinematics need. */
     void keep_lengths()
     {
-      across.resize(size(), 0.);
-      lengths.reserve(size());
+      nonlinear.across.resize(size(), 0.);
+      nonlinear.lengths.reserve(size());
       for (const dealii::Tensor<1, dim> &p : moments)
-        lengths.push_back(p.norm());
+        nonlinear.lengths.push_back(p.norm());
     }
 
     std::size_t memory_consumption() const
@@ -76,7 +76,9 @@ namespace PeriDeal
       return (nodes.capacity() + (is_packed() ? neighbors.capacity() : neighbors.size())) *
                sizeof(unsigned int) +
              starts.capacity() * sizeof(std::size_t) + moments.size() * sizeof(moments[0]) +
-             (springs.size() + squares.size() + lengths.capacity() + across.capacity()) *
+             (springs.size() + squares.size() + nonlinear.lengths.capacity() +
+              nonlinear.across.capacity() + nonlinear.slopes.capacity() +
+              nonlinear.history.capacity()) *
                sizeof(double) +
              codes.capacity() * sizeof(BondCode::Code) + parts.capacity() * sizeof(parts[0]) +
              units.capacity() * sizeof(units[0]) + state.memory_consumption();
@@ -84,11 +86,17 @@ namespace PeriDeal
 
     std::vector<unsigned int>           nodes; // one a row
     std::vector<std::size_t>            starts{0};
-    std::vector<unsigned int>           neighbors;       // BondEnds
-    std::vector<dealii::Tensor<1, dim>> moments;         // W xi, of the tangent W x Y/|Y|
-    std::vector<double>                 springs;         // at first W x^2
-    std::vector<double>                 squares;         // W x^2, if they are asked for later
-    std::vector<double>                 lengths, across; // W x; force over length in the tangent
+    std::vector<unsigned int>           neighbors; // BondEnds
+    std::vector<dealii::Tensor<1, dim>> moments;   // W xi, of the tangent W x Y/|Y|
+    std::vector<double>                 springs;   // at first W x^2
+    std::vector<double>                 squares;   // W x^2, if they are asked for later
+
+    /** What forces that are not linear need, or empty. */
+    struct
+    {
+      std::vector<double> lengths, across; // W x; force over length in the tangent
+      std::vector<double> slopes, history; // of a BondLaw: in the tangent; its own numbers
+    } nonlinear;
 
     // Where rows are packed, instead of these:
     std::vector<BondCode::Code>                 codes;

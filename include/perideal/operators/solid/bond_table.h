@@ -66,8 +66,11 @@ namespace PeriDeal
      */
     void go_on_beyond(FictitiousBondList<dim> &&found, const bool may_pack);
 
-    /** Make springs of W x^2, once q is final, and on ghosts. @param full of full kinematics */
-    void find_springs(const bool full);
+    /**
+     * Make springs of W x^2, once q is final, and on ghosts.
+     * @param full of full kinematics @param n_history of each bond
+     */
+    void find_springs(const bool full, const unsigned int n_history);
 
     /** Visit the bonds of an owned node, broken or not, stored or not, in its family's order. */
     template <typename Visit>
@@ -261,6 +264,14 @@ namespace PeriDeal
                    LinearPeridynamicSolid::spring(stiffnesses(i, j), w * unit.weight)});
       }
   }
+
+
+  /** Exchange the histories of all bonds, n numbers of each. Collective. */
+  template <int dim>
+  void exchange_histories(BondTable<dim>    &bonds,
+                          Archive           &archive,
+                          const NodeKeys    &keys,
+                          const unsigned int n);
 
 
   /** Sum of product(bond) over the bonds of an owned node. */

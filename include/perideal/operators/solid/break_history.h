@@ -31,12 +31,22 @@ namespace PeriDeal
   };
 
 
+  /** Strain energy that has been released so far, other than by bonds that broke. */
+  struct ReleasedEnergy
+  {
+    double by_growth  = 0.; // of cracks
+    double by_joining = 0.; // of nodes a zone: bonds store another energy than the cells before
+    double by_law     = 0.; // turned into heat, in steps that were accepted
+  };
+
+
   /** What has broken of a body so far. The same on all processes. */
   struct BreakHistory
   {
     double             released = 0.; // strain energy
     unsigned long long n_broken = 0;  // bonds
     BreakPlaces        places;
+    bool               is_possible = true; // that bonds break
 
     /** Collective. */
     void exchange(Archive &archive);

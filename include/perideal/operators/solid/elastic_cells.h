@@ -50,7 +50,7 @@ namespace PeriDeal
       double force(const unsigned int unknown, const Vector &u) const;
 
       dealii::FEValues<dim>      values;
-      dealii::FullMatrix<double> stiffness;
+      dealii::FullMatrix<double> stiffness, shear; // the part that the shear modulus multiplies
       dealii::Vector<double>     thermal, mass, diagonal, volume; // diagonal: of the mass
       double                     thermal_energy = 0.;
       std::vector<dealii::types::global_dof_index> indices, unknowns;
@@ -132,6 +132,9 @@ namespace PeriDeal
 
     /** As ElasticElements::lowest_remainder(), of own cells. */
     double lowest_remainder() const;
+
+    /** Data::shear is to be made. */
+    bool with_shear = false;
 
     CutCells<dim>    by_cracks;
     CrackSideFactors factors; // empty: none

@@ -31,6 +31,10 @@ namespace PeriDeal
    * what breaks or joins the zone changes only cells and rows beside it. The preconditioner is then
    * made for the elements of cells that are not cut, with the bonds between vertices of one cell.
    *
+   * With another law than the linear one (NodalLaw) the bonds of the zone answer by it, and where
+   * it relaxes the shear of the cells does: with S the part of K that the shear modulus multiplies,
+   * F = K u + S (u* - u), u* what the law makes of the displacements.
+   *
    * Where explicit steps follow rows of the matrix share their values (ElementMatrix).
    *
    * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j
@@ -52,7 +56,7 @@ namespace PeriDeal
     Spectrum spectrum() const override;
     bool     surrogate_is_exact() const override
     {
-      return !breaking;
+      return !breaking && !law;
     }
 
     OperatorSize size() const override;
@@ -69,8 +73,16 @@ namespace PeriDeal
 
     const BreakHistory *break_history() const override
     {
-      return breaking ? &breaking->history : nullptr;
+      return breaking && breaking->history.is_possible ? &breaking->history : nullptr;
     }
+
+    bool nonlinear() const override
+    {
+      return law && !law->nodal.steps->is_linear();
+    }
+
+    void linearize(const Vector &u) override;
+    void accept(const Vector &u, const double t) override;
 
     std::vector<NodePair> broken_since(std::size_t &n_known) const override
     {
@@ -95,16 +107,10 @@ namespace PeriDeal
                         std::pair<unsigned long long, std::string>();
     }
 
-    /** ZoneBreaking::damage(); empty where no bonds may break. Not collective. */
-    std::vector<double> damage() const
+    /** Null: no bonds may break, and none has another law than the linear one. Not collective. */
+    const ZoneBreaking<dim> *breaking_zone() const
     {
-      return breaking ? breaking->damage() : std::vector<double>();
-    }
-
-    /** ZoneBreaking::breaks(). Not collective. */
-    std::vector<BondBreak> breaks() const
-    {
-      return breaking ? breaking->breaks() : std::vector<BondBreak>();
+      return breaking.get();
     }
 
     ForceBalance forces(const Vector &u, const double t) const override;
@@ -187,13 +193,12 @@ namespace PeriDeal
     void assemble_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
     bool join_zone(const ChangeSet<dim> &change) override;
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
+    void find_forces(Vector &y, const Vector &u, const double t) const override;
     void find_loads(Vector &loads, const double t) const override;
     void surrogate_made() const override
     {
-      if (!breaking)
-        return;
-      n_broken_of_surrogate = breaking->n_broken_pairs();
-      breaking->keep_zone();
+      if (breaking)
+        breaking->keep_zone();
     }
 
     void exchange_bonds(Archive                     &archive,
@@ -218,9 +223,7 @@ namespace PeriDeal
     dealii::TrilinosWrappers::SparsityPattern pattern(const bool with_bonds, const bool ever) const;
     /** @param thermal_alone thermal loads, of K as it is; else all that is there */
     void assemble(const bool thermal_alone);
-    void set_all_bonds();
     void find_diagonal();
-    void throw_if_isolated() const;
     /**
      * Add a multiple of what cells and rows of bonds have of K.
      * @param u null, or where bonds break: ghosts are up to date; what is added to forces and
@@ -249,7 +252,6 @@ namespace PeriDeal
                      const std::vector<unsigned int> &rows,
                      const Vector                    &u,
                      const std::function<void()>     &make_change);
-    void   mend_diagonal(const std::vector<Cell> &of_cells, const std::vector<unsigned int> &rows);
     /** Let nodes join the zone where u, whose ghosts are up to date, stretches the body. */
     bool join_stretched(const Vector &u);
 
@@ -268,9 +270,21 @@ namespace PeriDeal
     mutable ElementMatrix<dim, dim>                stiffness;
     Vector                                         volumes;
     double                                         n_bonds = 0.; // of this process
-    double              thermal_energy = 0.; // of a body that is held everywhere
-    mutable Vector      force_change;        // of K u, by what broke or joined at the last u
-    mutable bool        changes_forces        = false;
-    mutable std::size_t n_broken_of_surrogate = 0;
+    double thermal_energy = 0.; // of a body that is held everywhere
+
+    /** Of K u, by what broke or joined at the last u. */
+    mutable struct
+    {
+      Vector forces;
+      bool   any = false;
+    } changes;
+
+    struct Law
+    {
+      NodalLaw                nodal;
+      ElementMatrix<dim, dim> shear;          // S, if the law relaxes
+      mutable Vector          change, forces; // of multiply_shear()
+    };
+    std::unique_ptr<Law> law; // null: the linear one
   };
 } // namespace PeriDeal

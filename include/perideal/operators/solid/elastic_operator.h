@@ -3,11 +3,14 @@
 
 #pragma once
 
+#include <deal.II/base/partitioner.h>
+
 #include <perideal/operators/interface/operator.h>
 #include <perideal/operators/solid/break_history.h>
 #include <perideal/operators/solid/force_balance.h>
 #include <perideal/scene/change_set.h>
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,7 +60,10 @@ namespace PeriDeal
     virtual void unbalanced(Vector &r, const Vector &u, const double t) const = 0;
 
     /** Gives a vector the layout of one number for each node. Not collective. */
-    virtual void initialize_nodal_vector(Vector &vector) const = 0;
+    void initialize_nodal_vector(Vector &vector) const
+    {
+      vector.reinit(nodal.layout);
+    }
 
     /**
      * Let the body be warmer at its nodes by so much than when it is unstressed; K stays as it is.
@@ -71,7 +77,7 @@ namespace PeriDeal
      */
     const Vector &temperature_change() const
     {
-      return nodal_change;
+      return nodal.temperature_change;
     }
 
     /**
@@ -105,6 +111,12 @@ namespace PeriDeal
 
     /** Make K the tangent at u. Collective. */
     virtual void linearize(const Vector &) {}
+
+    /**
+     * Laws that know what the body went through go on from u at time t. Until then states of any
+     * later time may be tried. Collective.
+     */
+    virtual void accept(const Vector & /*u*/, const double /*t*/) {}
 
     /**
      * The largest |Y|/x - 1, either sign, of unbroken bonds Y that were x long; 0 where nonlinear()
@@ -169,9 +181,8 @@ namespace PeriDeal
 
     /**
      * Make the cracks of the scene those of the span of time between events that holds t: nodes
-     * join the zone of a coupling, then bonds and cells are cut. Both give up energy at u, which
-     * released_energy() counts. Returns whether K has changed: then its diagonal has, too, and its
-     * spectrum may have. Collective. Throws UserError where they leave a node without hold.
+     * join the zone, then bonds and cells are cut, which gives up energy at u. Returns whether K
+     * and its diagonal have changed. Collective. Throws UserError where a node loses its hold.
      */
     virtual bool grow_cracks(const Vector & /*u*/, const double /*t*/)
     {
@@ -180,8 +191,7 @@ namespace PeriDeal
 
     /**
      * Let nodes join the zone of a coupling where u has stretched the body, before bonds break
-     * there. Returns whether K has changed; what the body gives up by it is
-     * energy_released_by_joining(). Collective.
+     * there. Returns whether K has changed. Collective.
      */
     virtual bool widen_zone(const Vector & /*u*/)
     {
@@ -210,9 +220,8 @@ namespace PeriDeal
     }
 
     /**
-     * Cells outside of the zone of a coupling that u stretches beyond the critical stretch, though
-     * no bond of theirs is there to break: how many, and the place of the worst as `(x, y)`.
-     * Collective.
+     * Cells outside of the zone of a coupling beyond the critical stretch, without bonds to break:
+     * how many, and the place of the worst as `(x, y)`. Collective.
      */
     virtual std::pair<unsigned long long, std::string> stretched_outside(const Vector & /*u*/) const
     {
@@ -240,19 +249,13 @@ namespace PeriDeal
       return false;
     }
 
-    /** What growing cracks have released alone. Not collective. */
-    double energy_released_by_growth() const
+    /** But for that of bonds that broke. Not collective. */
+    const ReleasedEnergy &released() const
     {
-      return released_by_growth;
+      return released_beside;
     }
 
-    /** By nodes that joined a zone: bonds store another energy than the cells they replace. */
-    double energy_released_by_joining() const
-    {
-      return released_by_joining;
-    }
-
-    /** All strain energy released so far, by broken bonds, too. Not collective. */
+    /** All of it, by broken bonds, too. Not collective. */
     double released_energy() const;
 
     unsigned long long n_broken_bonds() const;
@@ -260,7 +263,6 @@ namespace PeriDeal
     /** Where; empty while none have. Not collective. */
     const BreakPlaces &break_places() const;
 
-    /** Counters, and the temperature that was set. */
     void exchange(Archive &archive, const NodeKeys &keys) override;
 
     bool symmetric() const override
@@ -283,13 +285,16 @@ namespace PeriDeal
     /** Numbers that look random but depend on the unknowns' places alone. Not collective. */
     virtual void fill_noise(Vector &vector) const = 0;
 
-    double released_by_growth = 0., released_by_joining = 0.;
-    bool   has_contact = false;
+    ReleasedEnergy released_beside;
+    bool           has_contact = false;
+
+    struct
+    {
+      std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout; // of one number for each
+      Vector                                                     temperature_change; // or empty
+    } nodal;
 
     /** Keeps what temperature_change() gives. Collective. */
     void keep_temperature_change(const Vector &nodal);
-
-  private:
-    Vector nodal_change;
   };
 } // namespace PeriDeal

@@ -25,7 +25,7 @@ namespace PeriDeal
   {
   public:
     /** Both have to outlive this object. */
-    FamilyBonds(Coupling<dim> &coupling, const BodyParameters<dim> &body);
+    FamilyBonds(Coupling<dim> &coupling, const BodyParameters<dim> &body, const NodalLaw *law);
 
     std::vector<double> critical_stretches(const BodyParameters<dim> &body) const override;
     void                set_rows(const std::vector<unsigned int> &of_nodes,
@@ -35,8 +35,7 @@ namespace PeriDeal
     std::vector<unsigned int> rows_at(const std::vector<unsigned int> &ends) const override;
 
   private:
-    using ZoneBonds<dim>::stiffness;
-    using ZoneBonds<dim>::dilatation;
+    using ZoneBonds<dim>::coefficients;
 
     StateLaw law_of(const unsigned int node) const;
     void     set_row_of(const unsigned int node);

@@ -44,6 +44,20 @@ namespace PeriDeal
                                              sum);
     }
 
+    double shear_tension(const unsigned int i, const double sum) const
+    {
+      return LinearPeridynamicSolid::shear_tension((*this)[i],
+                                                   weighted.local_element(i),
+                                                   nodes.volume(i),
+                                                   sum);
+    }
+
+    /** tension() in the tangent (slope). */
+    double tangent_tension(const unsigned int i, const double sum) const
+    {
+      return slope == 1. ? tension(i, sum) : tension(i, sum) + (slope - 1.) * shear_tension(i, sum);
+    }
+
     /**
      * q of an owned node with this family; @p message is set, if it is empty, where its bonds do
      * not hold it.
@@ -61,9 +75,10 @@ namespace PeriDeal
       return laws.capacity() * sizeof(StateLaw);
     }
 
-    Vector     weighted;               // q_i; ghosts up to date
-    const bool volumetric;             // there are dilatations
-    bool       several_phases = false; // nodes differ in b
+    Vector         weighted;               // q_i; ghosts up to date
+    const bool     volumetric;             // there are dilatations
+    mutable double slope          = 1.;    // of a linear BondLaw, in its step
+    bool           several_phases = false; // nodes differ in b
 
   private:
     const Nodes<dim>     &nodes;

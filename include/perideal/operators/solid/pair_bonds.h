@@ -25,7 +25,7 @@ namespace PeriDeal
   {
   public:
     /** Both have to outlive this object. */
-    PairBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds);
+    PairBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds, const NodalLaw *law);
 
     std::vector<double> critical_stretches(const BodyParameters<dim> &body) const override;
     void                set_rows(const std::vector<unsigned int> &of_nodes,

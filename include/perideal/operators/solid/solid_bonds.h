@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/solid/bond_kinematics.h>
+#include <perideal/operators/solid/bond_forces.h>
 #include <perideal/operators/solid/solid_sums.h>
 
 #include <limits>
@@ -37,10 +37,12 @@ namespace PeriDeal
     Families<dim>       families;
     NodeLaws<dim>       laws;
     ThermalStrains      thermal;
+    LawSteps            law;
     BondEnds<dim>       ends;
     BondTable<dim>      rows;
     SolidSums<dim>      sums;
     BondKinematics<dim> kinematics;
+    BondForces<dim>     forces;
     // Of a mesh: least thickness of the body behind free sides, where it is thin (thin_on_mesh()).
     double thinnest = std::numeric_limits<double>::infinity();
 

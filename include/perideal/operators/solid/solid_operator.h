@@ -32,11 +32,6 @@ namespace PeriDeal
       vector.reinit(unknowns);
     }
 
-    void initialize_nodal_vector(Vector &vector) const override
-    {
-      vector.reinit(nodes);
-    }
-
     void          surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const final;
     const Vector &surrogate_diagonal() const final
     {
@@ -134,8 +129,8 @@ namespace PeriDeal
      */
     virtual void apply_change(const ChangeSet<dim> &change, const bool loaded) = 0;
 
-    /** y = -F(u), without loads and contact. */
-    virtual void find_forces(Vector &y, const Vector &u) const
+    /** y = -F(u) at time t, without loads and contact. */
+    virtual void find_forces(Vector &y, const Vector &u, const double /*t*/) const
     {
       this->multiply(y, u);
     }

@@ -33,6 +33,9 @@ namespace PeriDeal
    * rotation makes none (BondKinematics). q is that of the undeformed body. In motion what has no
    * bonds between it repels each other (ShortRangeContact).
    *
+   * With another law than the linear one forces follow from extensions bond by bond, and K is the
+   * tangent (BondKinematics, BondLaw).
+   *
    * Viscosity (Le 2014 eq 2.43) is K without the dilatations. Bonds are those of SolidBonds; which
    * break, BondBreaking decides.
    */
@@ -46,6 +49,7 @@ namespace PeriDeal
       SolidOperator<dim>::require(body);
       SolidBonds<dim>::require(body);
       require_traction_layer(body);
+      require_law(body, false, false);
     }
 
     /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
@@ -66,8 +70,10 @@ namespace PeriDeal
     double       damping_bound() const override;
     bool         nonlinear() const override
     {
-      return solid.kinematics.is_full();
+      return solid.kinematics.is_full() || (solid.law.any() && !solid.law->is_linear());
     }
+
+    void accept(const Vector &u, const double t) override;
 
     void                mend_unbalanced(Vector &r, const Vector &u, const double t) const override;
     void                linearize(const Vector &u) override;
@@ -119,7 +125,7 @@ namespace PeriDeal
                         const NodeKeys              &keys,
                         const std::function<void()> &at_surrogate) override;
     void apply_change(const ChangeSet<dim> &change, const bool loaded) override;
-    void find_forces(Vector &y, const Vector &u) const override;
+    void find_forces(Vector &y, const Vector &u, const double t) const override;
     void find_loads(Vector &loads, const double t) const override;
     void take_released(const double energy) override
     {
@@ -154,9 +160,6 @@ namespace PeriDeal
 
     /** The same with full kinematics: the rows of these nodes and of their neighbours. */
     void sum_again(Vector &r, const Vector &u, const std::vector<unsigned int> &changed) const;
-
-    /** What these owned nodes have of energy(). Collective. */
-    double energy_of(const std::vector<unsigned int> &of_nodes, const Vector &u) const;
 
     /** What is found of all bonds, or of those of nodes that have lost some. */
     void follow_bonds(const std::vector<unsigned int> *of_nodes = nullptr);

@@ -6,6 +6,7 @@
 #include <perideal/laws/linear_peridynamic_solid.h>
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/parts/crack_side_factors.h>
+#include <perideal/operators/solid/nodal_law.h>
 
 #include <array>
 #include <memory>
@@ -28,7 +29,8 @@ namespace PeriDeal
    *   c_ij = xi . (u_j - u_i) - s x^2,
    *
    * with k and a of FamilyBonds (blending), or each bond by itself: k = x^2/2, a = 0 (PairBonds,
-   * exchange). An application takes two passes over the rows, the dilatations first.
+   * exchange); another law (NodalLaw) has c* in the place of c. An application takes two passes
+   * over the rows, the dilatations first.
    *
    * Each owned node that bonds act on has a row of them, in the order of their offsets; bonds of
    * two processes stand in rows of both. Not collective unless stated.
@@ -68,11 +70,17 @@ namespace PeriDeal
     /** The bond between an owned node and another one bears nothing any more. */
     void release(const unsigned int node, const unsigned int neighbor);
 
-    /** Add K u to the owned unknowns of y; ghosts of u are up to date. Collective. */
-    void add_forces(Vector &y, const Vector &u) const
+    /**
+     * Add F(u) to the owned unknowns of y, or K u of the tangent at the last linearize(); ghosts of
+     * u are up to date. Collective.
+     */
+    void add_forces(Vector &y, const Vector &u, const bool of_tangent = false) const
     {
-      add_forces_of(with_rows, 1., y, u);
+      add_forces_of(with_rows, 1., y, u.begin(), nullptr, of_tangent);
     }
+
+    /** With a law that is not linear. Ghosts as above. */
+    void linearize(const Vector &u);
 
     /** Add a multiple of K u in the rows of some nodes; ghosts as above. Collective. */
     void add_forces_of(const std::vector<unsigned int> &of_nodes,
@@ -86,9 +94,6 @@ namespace PeriDeal
     /** What an owned node has of the diagonal of K. */
     dealii::Tensor<1, dim> diagonal_of(const unsigned int node) const;
 
-    /** Add the diagonal of K to a vector of unknowns. */
-    void add_diagonal(Vector &diagonal) const;
-
     /** Add the sums over the absolute values of rows of K, or more. Collective. */
     void add_row_sums(std::vector<double> &sums) const;
 
@@ -98,12 +103,14 @@ namespace PeriDeal
     /**
      * Sum of E_i over these nodes; over all nodes, all of it. Ghosts as above.
      * @param thermal strains of nodes known here; empty: none
+     * @param dissipated what the law dissipates in the step, instead
      */
     double energy(const Vector                    &u,
                   const std::vector<unsigned int> &of_nodes,
-                  const std::vector<double>       &thermal) const
+                  const std::vector<double>       &thermal,
+                  const bool                       dissipated = false) const
     {
-      return energy(u.begin(), of_nodes, thermal.empty() ? nullptr : thermal.data());
+      return energy(u.begin(), of_nodes, thermal.empty() ? nullptr : thermal.data(), dissipated);
     }
 
     /**
@@ -146,15 +153,22 @@ namespace PeriDeal
     std::size_t memory_consumption() const;
 
   protected:
-    /** @param bonds_of_zone has to outlive this object, which has no bonds yet. */
-    explicit ZoneBonds(const Families<dim> &bonds_of_zone);
+    /** All have to outlive this object, which has no bonds yet. @param law null: linear */
+    ZoneBonds(const Families<dim> &bonds_of_zone, const NodalLaw *law);
 
     void set_row(const unsigned int                                     node,
                  const std::vector<typename DiffusionBonds<dim>::Bond> &list);
     void finish_rows();
 
     const Families<dim> &families;
-    Vector               stiffness, dilatation; // k, a, with ghosts; empty: bonds by themselves
+    /** Of nodes, with ghosts. */
+    struct
+    {
+      Vector              stiffness, dilatation; // k, a; empty: bonds by themselves
+      Vector              shear;  // what of a the shear modulus multiplies; empty: nobody asks
+      std::vector<double> slopes; // of bonds, by a law that is not linear; empty: 1
+    } coefficients;
+    const NodalLaw *const law; // null: the linear solid
 
   private:
     struct Row
@@ -166,10 +180,10 @@ namespace PeriDeal
     /** k_i/x^2 + k_j/x^2. */
     double spring(const unsigned int i, const Bond &bond) const
     {
-      return stiffness.size() == 0 ?
+      return coefficients.stiffness.size() == 0 ?
                1. :
-               LinearPeridynamicSolid::spring(stiffness.local_element(i) +
-                                                stiffness.local_element(bond.neighbor),
+               LinearPeridynamicSolid::spring(coefficients.stiffness.local_element(i) +
+                                                coefficients.stiffness.local_element(bond.neighbor),
                                               vectors[bond.vector].norm_square());
     }
 
@@ -180,16 +194,18 @@ namespace PeriDeal
                   const double      *thermal) const;
 
     /** Whether nodes have any a_i sum_j W_ij c_ij, which is found. */
-    bool find_tensions(const double *u, const double *thermal) const;
+    bool find_tensions(const double *u, const double *thermal, const bool of_tangent) const;
 
     void   add_forces_of(const std::vector<unsigned int> &of_nodes,
                          const double                     multiple,
                          Vector                          &y,
                          const double                    *u,
-                         const double                    *thermal) const;
+                         const double                    *thermal,
+                         const bool                       of_tangent = false) const;
     double energy(const double                    *u,
                   const std::vector<unsigned int> &of_nodes,
-                  const double                    *thermal) const;
+                  const double                    *thermal,
+                  const bool                       dissipated = false) const;
 
     std::vector<dealii::Tensor<1, dim>> vectors;
     mutable Vector                      tensions;            // a_i sum_j W_ij c_ij
@@ -206,5 +222,6 @@ namespace PeriDeal
   /** The bonds of a coupling that has a zone in which they may break, without rows. */
   template <int dim>
   std::unique_ptr<ZoneBonds<dim>> make_zone_bonds(Coupling<dim>             &coupling,
-                                                  const BodyParameters<dim> &body);
+                                                  const BodyParameters<dim> &body,
+                                                  const NodalLaw            *law);
 } // namespace PeriDeal

@@ -42,10 +42,14 @@ namespace PeriDeal
     /** Throws UserError for bodies whose bonds cannot break beside elements. Not collective. */
     static void require(const BodyParameters<dim> &body);
 
-    /** All have to outlive this object. Throws UserError for critical stretches not above 0. */
+    /**
+     * All have to outlive this object. Throws UserError for critical stretches not above 0.
+     * @param law of the bonds; null: the linear solid
+     */
     ZoneBreaking(Coupling<dim>                 &coupling,
                  const dealii::DoFHandler<dim> &dofs,
-                 const BodyParameters<dim>     &body);
+                 const BodyParameters<dim>     &body,
+                 const NodalLaw                *law = nullptr);
 
     /** Thermal strains of all nodes known here; empty: none. Not collective. */
     void set_thermal(std::vector<double> strains)
@@ -130,13 +134,9 @@ namespace PeriDeal
 
     /**
      * What has broken, and the zone. Where a body is loaded, marks and zone are set; rows are left.
-     * @param n_first an earlier n_broken_pairs(), which is archived
-     * @param at_first as BondBreaking::exchange()
+     * @param at_first to be called when it is as at the last keep_zone(), if that is another state
      */
-    void exchange(Archive                     &archive,
-                  const NodeKeys              &keys,
-                  std::size_t                 &n_first,
-                  const std::function<void()> &at_first);
+    void exchange(Archive &archive, const NodeKeys &keys, const std::function<void()> &at_first);
 
     std::size_t memory_consumption() const;
 
@@ -182,6 +182,11 @@ namespace PeriDeal
     StretchedCells<dim> cells;          // whose centres have lit nothing yet
     std::vector<Break>  broken;         // in the order of breaking
     std::size_t         n_followed = 0; // of those, by the zone
-    std::vector<double> kept_zone;      // weights of owned nodes
+    /** Of keep_zone(). */
+    struct
+    {
+      std::vector<double> weights; // of owned nodes
+      std::size_t         n_broken = 0;
+    } kept_zone;
   };
 } // namespace PeriDeal

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/instantiate.h>
+#include <perideal/operators/solid/law_steps.h>
+#include <perideal/scene/expression.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <unordered_map>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    using Maker = std::function<std::unique_ptr<BondLaw>(const Material::Law &)>;
+
+    /** The one list of laws, but for the linear one, which is LinearPeridynamicSolid. */
+    const std::map<SolidLaw, Maker> &makers()
+    {
+      static const std::map<SolidLaw, Maker> list;
+      return list;
+    }
+  } // namespace
+
+
+  LawSteps::LawSteps(const Material::Law &of_scene)
+  {
+    const auto found = makers().find(of_scene.kind);
+    if (found != makers().end())
+      law = found->second(of_scene);
+    set_time(0.);
+  }
+
+
+  void LawSteps::set_time(const double t) const
+  {
+    if (any())
+      law->set_step(begun ? std::max(0., t - accepted) : 0.);
+  }
+
+
+  void LawSteps::accept(const double t)
+  {
+    begun    = true;
+    accepted = t;
+    set_time(t);
+  }
+
+
+  void LawSteps::exchange(Archive &archive)
+  {
+    archive.exchange("begun", begun);
+    archive.exchange("accepted", accepted);
+    if (archive.loads())
+      set_time(accepted);
+  }
+
+
+  template <int dim>
+  void require_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled)
+  {
+    const Material &material = body.material;
+    material.refuse(material.law.kind != SolidLaw::linear && by_elements && !coupled &&
+                      (body.elasticity.computes_temperature ||
+                       !is_zero(body.elasticity.temperature_change)),
+                    "Law",
+                    "knows no 'Temperature change' (section 'Elasticity').");
+  }
+
+
+  void exchange_history(Archive                    &archive,
+                        const BondState::Numbering &numbering,
+                        const NodeKeys             &keys,
+                        const unsigned int          n,
+                        std::vector<double>        &history)
+  {
+    KeyedPairs pairs; // a node, and the number of its bond among its own
+    if (!archive.loads())
+      {
+        for (std::size_t number = 0; number < numbering.n_bonds(); ++number)
+          {
+            const std::size_t node = numbering.node_of(number);
+            pairs.keys.push_back({keys[node], number - numbering.first_of(node)});
+          }
+        pairs.values = history;
+      }
+    archive.exchange("history", pairs, keys);
+    if (!archive.loads())
+      return;
+    std::unordered_map<std::uint64_t, std::size_t> node_of;
+    for (std::size_t node = 0; node < keys.size(); ++node)
+      node_of[keys[node]] = node;
+    for (std::size_t k = 0; k < pairs.keys.size(); ++k)
+      {
+        const std::size_t first = numbering.first_of(node_of.at(pairs.keys[k][0]));
+        std::copy_n(pairs.values.begin() + n * k,
+                    n,
+                    history.begin() + n * (first + pairs.keys[k][1]));
+      }
+  }
+
+
+  PERIDEAL_INSTANTIATE_FUNCTION(require_law);
+} // namespace PeriDeal
