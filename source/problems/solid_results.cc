@@ -559,10 +559,12 @@ namespace PeriDeal
       balance["strain"] = energy.strain;
       balance["start"]  = energy.start;
       add("work", "work of loads and supports", energy.work);
+      if (scene.material.law.kind == SolidLaw::viscoelastic)
+        add("dissipated by the law", "energy dissipated by the law", op().released().by_law);
       if (op().may_release_energy())
         {
-          const double by_growth  = op().energy_released_by_growth(),
-                       by_joining = op().energy_released_by_joining();
+          const double by_growth  = op().released().by_growth,
+                       by_joining = op().released().by_joining;
           if (op().brittle())
             add("released", "energy released by broken bonds", op().break_history()->released);
           if (op().has_growing_cracks())

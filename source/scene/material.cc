@@ -79,6 +79,11 @@ namespace PeriDeal
       " The stretch at which bonds break follows from it. Without this and Critical stretch they do not break.";
     entry("Critical stretch") =
       "Relative extension at which a bond breaks, instead of Fracture energy" + formula;
+    declare(law.kind, "Law", "linear", {"linear", "viscoelastic"}) =
+      "Elasticity: how the force of a bond follows from its extension. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not.";
+    declare("Relaxation", EntryType::list) =
+      "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with "
+      "exp(-t/time). A time is that of the section `Time`.";
     declare("Weibull modulus", EntryType::text, "", "1") =
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; "
       "a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
@@ -171,6 +176,46 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** The entries of the law in the section, whose kind has been read. Throws UserError. */
+    void parse_law(const SceneSection &section, Material::Law &law)
+    {
+      const auto belongs =
+        [&](const std::string &entry, const SolidLaw kind, const std::string &name) {
+          section.refuse(section.is_given(entry) && law.kind != kind,
+                         entry,
+                         "is for 'Law = " + name + "'; 'Law' is '" + section.text("Law") +
+                           "'. Leave one of them out.");
+          section.refuse(law.kind == kind && !section.is_given(entry),
+                         entry,
+                         "is empty, which 'Law = " + name + "' needs.");
+          return law.kind == kind;
+        };
+      const std::string relaxation = "Relaxation";
+      law.relaxation.clear();
+      if (belongs(relaxation, SolidLaw::viscoelastic, "viscoelastic"))
+        {
+          double sum = 0.;
+          for (const std::string &term : split_list(section.text(relaxation), ';'))
+            {
+              const auto numbers =
+                parse_numbers(term, 2, "numbers, a share and a time", section.where(relaxation));
+              section.refuse(!(numbers[0] > 0.) || !(numbers[1] > 0.),
+                             relaxation,
+                             "found '" + term + "', needs a share and a time greater than 0.");
+              law.relaxation.push_back({numbers[0], numbers[1]});
+              sum += numbers[0];
+            }
+          section.refuse(sum > 1. + 1e-12,
+                         relaxation,
+                         "has shares of the shear modulus whose sum is " + number_text(sum) +
+                           ", needs at most 1.");
+        }
+    }
+  } // namespace
+
+
   void Material::parse(const Physics                          physics,
                        const unsigned int                     dim,
                        const PlaneState                       plane,
@@ -218,6 +263,9 @@ namespace PeriDeal
     if (fracture_energy && critical_stretch)
       error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
+    for (const std::string entry : {"Law", "Relaxation"})
+      refuse_unless_elastic(entry, physics);
+    parse_law(*this, law);
     if (physics == Physics::elasticity)
       parse_moduli(dim, plane);
     else

@@ -134,7 +134,8 @@ namespace PeriDeal
   {
     const auto &forces = initial_and_source.body_force;
     return general.physics == Physics::elasticity && elasticity.is_static() &&
-           (warms_slowly() || !cracks.tips.empty() || boundary_conditions.depends_on_time() ||
+           (warms_slowly() || !cracks.tips.empty() || material.law.kind == SolidLaw::viscoelastic ||
+            boundary_conditions.depends_on_time() ||
             std::any_of(forces.begin(), forces.end(), [](const auto &force) {
               return force.depends_on_time();
             }));

@@ -56,6 +56,8 @@ namespace PeriDeal
     scene.time.refuse(
       scene.is_loaded_slowly() && scene.time.steady && !scene.elasticity.computes_temperature,
       "Steady",
+      scene.material.law.kind == SolidLaw::viscoelastic ?
+        "is true, but 'Law = viscoelastic' in section 'Material' relaxes in time." :
       scene.cracks.tips.empty() ?
         "is true, but there are loads that depend on t." :
         "is true, but there are cracks that grow ('Growth' or 'Paths' in section 'Cracks').");

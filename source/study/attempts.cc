@@ -34,6 +34,8 @@ namespace PeriDeal
         return "bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
       if (moves(scene) && (!scene.cracks.cracks.empty() || scene.peridynamics.horizon > 0.))
         return "motion with cracks, or with a horizon that is a length";
+      if (scene.material.law.kind != SolidLaw::linear)
+        return "another 'Law' than 'linear' (section 'Material')";
       if (!scene.time.steady && scene.deforms && !moves(scene))
         return "bodies at rest whose loads change with time";
       if (scene.cracks.change() && (scene.time.steady || scene.peridynamics.horizon > 0.))

@@ -122,7 +122,8 @@ namespace PeriDeal
   /** How the force of a bond follows from its extension. */
   enum class SolidLaw
   {
-    linear
+    linear,
+    viscoelastic
   };
 
   /**

@@ -8,6 +8,7 @@
 #include <perideal/scene/moduli.h>
 #include <perideal/scene/phases.h>
 #include <perideal/scene/physics.h>
+#include <perideal/scene/relaxation.h>
 #include <perideal/scene/section.h>
 
 #include <array>
@@ -47,7 +48,8 @@ namespace PeriDeal
     /** How the force of a bond follows from its extension (BondLaw). */
     struct Law
     {
-      SolidLaw kind = SolidLaw::linear;
+      SolidLaw                kind;
+      std::vector<Relaxation> relaxation; // viscoelastic
     } law;
 
     bool uniform_conductivity() const;

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/instantiate.h>
+#include <perideal/laws/viscoelastic_solid.h>
 #include <perideal/operators/solid/law_steps.h>
 #include <perideal/scene/expression.h>
 
@@ -19,7 +20,11 @@ namespace PeriDeal
     /** The one list of laws, but for the linear one, which is LinearPeridynamicSolid. */
     const std::map<SolidLaw, Maker> &makers()
     {
-      static const std::map<SolidLaw, Maker> list;
+      static const std::map<SolidLaw, Maker> list = {
+        {SolidLaw::viscoelastic,
+         [](const Material::Law &law) {
+           return std::make_unique<ViscoelasticSolid>(law.relaxation);
+         }}};
       return list;
     }
   } // namespace
@@ -61,12 +66,37 @@ namespace PeriDeal
   template <int dim>
   void require_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled)
   {
-    const Material &material = body.material;
-    material.refuse(material.law.kind != SolidLaw::linear && by_elements && !coupled &&
-                      (body.elasticity.computes_temperature ||
-                       !is_zero(body.elasticity.temperature_change)),
+    const Material   &material = body.material;
+    const SolidLaw    kind     = material.law.kind;
+    const std::string with_elements =
+      ", beside or instead of finite elements; use 'Models = peridynamics'.";
+    if (kind == SolidLaw::linear)
+      return;
+    body.coupling.refuse(
+      kind == SolidLaw::viscoelastic && coupled && body.coupling.scheme != CouplingScheme::blending,
+      "Scheme",
+      "found '" + body.coupling.text("Scheme") +
+        "', whose bonds take over bulk stiffness, too; with 'Law = viscoelastic' in section 'Material' use 'blending'.");
+    material.refuse(by_elements && (body.elasticity.computes_temperature ||
+                                    !is_zero(body.elasticity.temperature_change)),
                     "Law",
-                    "knows no 'Temperature change' (section 'Elasticity').");
+                    "found '" + material.text("Law") +
+                      "', which knows no 'Temperature change' (section 'Elasticity')" +
+                      with_elements);
+    material.refuse(
+      kind == SolidLaw::viscoelastic && (dim == 1 || body.elasticity.is_bond_based()),
+      "Law",
+      "'viscoelastic' is a shear modulus that relaxes while the bulk modulus stays: it "
+      "is for 'Dimension' 2 and 3 with 'Model = state-based'.");
+    material.refuse(
+      kind == SolidLaw::viscoelastic && dim == 2 && body.elasticity.plane == PlaneState::stress,
+      "Law",
+      "'viscoelastic' is for 'Plane = strain' in section 'Elasticity': in plane stress "
+      "the strain out of the plane would relax, too.");
+    body.elasticity.refuse(body.elasticity.absolute_reference.has_value(),
+                           "Heat of deformation",
+                           "is that of the linear law; 'Law' in section 'Material' is '" +
+                             material.text("Law") + "'.");
   }
 
 

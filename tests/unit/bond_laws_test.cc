@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+// Laws of bonds other than the linear one: by themselves, in peridynamics alone, beside elements.
+
+#include <perideal/base/archive.h>
+#include <perideal/laws/viscoelastic_solid.h>
+
+#include <cmath>
+#include <functional>
+
+#include "elastic_test_tools.h"
+
+using namespace PeriDeal;
+using namespace PeriDeal::OperatorTests;
+using dealii::Point;
+using dealii::Tensor;
+
+namespace
+{
+  const std::vector<Relaxation> terms{{0.3, 1.}, {0.4, 10.}};
+
+  const Settings viscous{{"Material/Law", "viscoelastic"},
+                         {"Material/Relaxation", "0.3, 1 ; 0.4, 10"}};
+
+  /** The relaxation function, and its integral. */
+  double relaxed(const double t)
+  {
+    return 0.3 + 0.3 * std::exp(-t) + 0.4 * std::exp(-t / 10.);
+  }
+
+  double integral(const double t)
+  {
+    return 0.3 * t - 0.3 * std::expm1(-t) - 4. * std::expm1(-t / 10.);
+  }
+
+
+  /** A body of each kind, alone or with all of its nodes in an overlap. */
+  struct Kind
+  {
+    const char *name;
+    ModelKind   model;
+    Settings    more;
+  };
+
+  template <int dim>
+  std::vector<Kind> kinds()
+  {
+    const Settings blended = Settings{{"Coupling/Zone", "x < 0.5"},
+                                      {"Coupling/Scheme", "blending"},
+                                      {"Coupling/Overlap", "2"}};
+    return {{"peridynamics", ModelKind::peridynamics, {}},
+            {"completed",
+             ModelKind::peridynamics,
+             {{"Peridynamics/Surface correction", "fictitious nodes"}}},
+            {"full",
+             ModelKind::peridynamics,
+             {{"Elasticity/Kinematics", "full"}, {"Elasticity/Solver", "conjugate gradients"}}},
+            {"elements", ModelKind::finite_elements, {}},
+            {"blending", ModelKind::coupled, blended},
+            {"blending, breaking",
+             ModelKind::coupled,
+             blended + Settings{{"Material/Critical stretch", "10"}}}};
+  }
+
+
+  template <int dim>
+  Settings solid()
+  {
+    return box<dim>() + (dim == 2 ? Settings{{"Elasticity/Plane", "strain"}} : Settings());
+  }
+
+
+  double worst_difference(const Vector &a, const Vector &b)
+  {
+    Vector difference(a);
+    difference -= b;
+    return difference.linfty_norm();
+  }
+
+
+  template <int dim>
+  NodeKeys keys_of(const Body<dim> &body)
+  {
+    NodeKeys keys;
+    Vector   x;
+    body.op().initialize_vector(x);
+    for (unsigned int i = 0; i < x.locally_owned_size() / dim; ++i)
+      {
+        std::uint64_t key = 0;
+        for (unsigned int d = 0; d < dim; ++d)
+          key = (key << 20) + std::llround(1e4 * (body.position(i)[d] + 1.));
+        keys.push_back(key);
+      }
+    return keys;
+  }
+} // namespace
+
+
+TEST(ViscoelasticSolid, ramp_and_steps_against_closed_forms)
+{
+  ViscoelasticSolid law(terms);
+  for (const double jump : {0., 2.})
+    {
+      std::vector<double> history(law.n_history(), 0.);
+      law.set_step(0.);
+      law.accept({jump, 1.}, history.data());
+      double t = 0., dissipated = 0., work = 0.5 * jump * jump;
+      for (const double dt : {0.1, 3., 1e-9, 0.5, 20.})
+        {
+          law.set_step(dt);
+          // A bond that is pulled at a rate of 1.
+          const BondValues now{jump + t + dt, 1.};
+          EXPECT_NEAR(law.effective(now, history.data()),
+                      jump * relaxed(t + dt) + integral(t + dt),
+                      1e-12 * now.product);
+          // The force is that of the steps before and of this one, whose work is exact by Simpson's
+          // rule on 200 parts.
+          const unsigned int n = 200;
+          for (unsigned int k = 0; k <= n; ++k)
+            {
+              const double at = t + dt * k / n;
+              work += (k == 0 || k == n ? 1. :
+                       k % 2 == 1       ? 4. :
+                                          2.) *
+                      dt / (3. * n) * (jump * relaxed(at) + integral(at));
+            }
+          dissipated += law.energy(now, history.data(), true);
+          EXPECT_NEAR(law.energy(now, history.data(), false) + dissipated, work, 1e-9 * work);
+          EXPECT_GE(law.energy(now, history.data(), true), 0.);
+          law.accept(now, history.data());
+          t += dt;
+        }
+    }
+}
+
+
+TEST(ViscoelasticSolid, trials_leave_nothing_behind)
+{
+  ViscoelasticSolid   law(terms);
+  std::vector<double> history(law.n_history(), 0.);
+  law.set_step(0.);
+  law.accept({1., 1.}, history.data());
+  law.set_step(7.);
+  const double first = law.effective({3., 1.}, history.data());
+  law.set_step(0.5);
+  law.effective({-2., 1.}, history.data());
+  law.set_step(7.);
+  EXPECT_EQ(law.effective({3., 1.}, history.data()), first);
+}
+
+
+namespace
+{
+  /**
+   * A body that is deformed at once, then held, then deformed on: forces are those of the bulk
+   * modulus, and those of the shear modulus that relax; and where energy is.
+   */
+  template <int dim>
+  void relaxes(const Kind &kind)
+  {
+    SCOPED_TRACE(std::to_string(dim) + "D, " + kind.name);
+    const auto body_of = [&](const char *bulk, const Settings &more) {
+      return std::make_unique<Body<dim>>(solid<dim>() + kind.more +
+                                           Settings{{"Material/Young modulus", ""},
+                                                    {"Material/Poisson ratio", ""},
+                                                    {"Material/Shear modulus", "1.5"},
+                                                    {"Material/Bulk modulus", bulk}} +
+                                           more,
+                                         kind.model);
+    };
+    const auto body_now = body_of("1", viscous);
+    Body<dim> &body     = *body_now;
+    // With full kinematics rotations change forces by the square of displacements.
+    const bool   full = std::string(kind.name) == "full";
+    const double size = full ? 1e-7 : 1., tolerance = full ? 1e-5 : 1e-11;
+    const auto   deformed = [&](const double factor) {
+      return body.values(
+        [&](const Point<dim> &p) { return Tensor<1, dim>(factor * size * bumpy_vector<dim>(p)); });
+    };
+    Vector of_bulk(deformed(0.)), of_shear(of_bulk), found(of_bulk), wanted(of_bulk);
+    body_of("1", {})->op().unbalanced(of_shear, deformed(1.), 0.);
+    body_of("2", {})->op().unbalanced(of_bulk, deformed(1.), 0.);
+    of_bulk -= of_shear; // forces are linear in both
+    of_shear -= of_bulk;
+    const double largest = of_shear.linfty_norm();
+    const auto   expect  = [&](const double now, const double t, const double history) {
+      body.op().unbalanced(found, deformed(now), t);
+      wanted = of_bulk;
+      wanted *= now;
+      wanted.add(history, of_shear);
+      EXPECT_LT(worst_difference(found, wanted), tolerance * largest) << "t = " << t;
+    };
+    expect(2., 0., 2.);
+    const double start = body.op().energy(deformed(2.));
+    body.op().accept(deformed(2.), 0.);
+    EXPECT_EQ(body.op().released().by_law, 0.);
+    expect(2., 5., 2. * relaxed(5.)); // one that is given up
+    for (const double t : {0.25, 3.})
+      {
+        expect(2., t, 2. * relaxed(t));
+        body.op().accept(deformed(2.), t);
+        EXPECT_NEAR(body.op().energy(deformed(2.)) + body.op().released().by_law,
+                    start,
+                    1e-11 * start);
+      }
+    EXPECT_GT(body.op().released().by_law, 0.1 * start);
+    expect(2.5, 4., 2. * relaxed(4.) + 0.5 * integral(1.));
+
+    // Archived, and taken up by another one.
+    MemoryArchive saved(MPI_COMM_WORLD);
+    body.op().exchange(saved, keys_of(body));
+    const auto    resumed_now = body_of("1", viscous);
+    Body<dim>    &resumed     = *resumed_now;
+    MemoryArchive loaded(saved, MPI_COMM_WORLD);
+    resumed.op().exchange(loaded, keys_of(resumed));
+    resumed.op().unbalanced(wanted, deformed(2.5), 4.);
+    body.op().unbalanced(found, deformed(2.5), 4.);
+    EXPECT_EQ(worst_difference(found, wanted), 0.);
+    EXPECT_EQ(resumed.op().released().by_law, body.op().released().by_law);
+  }
+
+
+  /** Forces are those of the energy, and K their derivative. */
+  template <int dim>
+  void has_energy(const Settings &settings, const ModelKind model, const double t)
+  {
+    Body<dim>  body(settings, model);
+    const auto values = [&](const double size) {
+      return body.values(
+        [&](const Point<dim> &p) { return Tensor<1, dim>(size * bumpy_vector<dim>(p)); });
+    };
+    const Vector u         = values(0.05);
+    Vector       direction = body.values([](const Point<dim> &p) {
+      Point<dim> q;
+      for (unsigned int d = 0; d < dim; ++d)
+        q[d] = 1.3 * p[dim - 1 - d] + 0.2;
+      return bumpy_vector<dim>(q);
+    });
+    body.op().accept(values(0.03), 0.);
+    const double step = 1e-5;
+    Vector       up(u), down(u), forces(u), of_up(u), of_down(u), image(u);
+    up.add(step, direction);
+    down.add(-step, direction);
+    body.op().unbalanced(of_up, up, t);
+    const double above = body.op().energy(up);
+    body.op().unbalanced(of_down, down, t);
+    const double below = body.op().energy(down);
+    body.op().unbalanced(forces, u, t);
+    body.op().linearize(u);
+    body.op().multiply(image, direction);
+    if (t == 0.)
+      {
+        EXPECT_NEAR((above - below) / (2. * step),
+                    -(forces * direction),
+                    1e-6 * forces.l2_norm() * direction.l2_norm());
+      }
+    of_up -= of_down;
+    of_up *= -0.5 / step;
+    EXPECT_LT(worst_difference(of_up, image), 1e-5 * image.linfty_norm());
+  }
+} // namespace
+
+
+TEST(BondLaws, shear_modulus_relaxes)
+{
+  for (const Kind &kind : kinds<2>())
+    relaxes<2>(kind);
+  for (const Kind &kind : kinds<3>())
+    if (std::string(kind.name) != "completed")
+      relaxes<3>(kind);
+}
+
+
+TEST(BondLaws, tangents_and_energies)
+{
+  for (const Kind &kind : kinds<2>())
+    {
+      SCOPED_TRACE(kind.name);
+      // The energy of a law with a history is that of the instant.
+      for (const double t : {0., 1.5})
+        has_energy<2>(solid<2>() + viscous + kind.more, kind.model, t);
+    }
+}
