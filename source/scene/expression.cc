@@ -267,6 +267,15 @@ namespace PeriDeal
   {}
 
 
+  namespace
+  {
+    bool is_of_places(const std::string &variables)
+    {
+      return variables.front() == 'x' || variables.front() == 't';
+    }
+  } // namespace
+
+
   Expression::Expression(
     const std::function<double(const dealii::Point<3> &, const double)> &function,
     const bool                                                           depends_on_time)
@@ -297,9 +306,11 @@ namespace PeriDeal
         return;
       }
     // The variants of a scene have most of their formulas in common.
-    static std::map<std::pair<std::string, bool>, std::weak_ptr<Compiled>> known;
-    std::weak_ptr<Compiled> &one = known[{formula, with_temperature}];
-    compiled                     = one.lock();
+    const bool of_places = is_of_places(variables);
+    static std::map<std::pair<std::string, std::string>, std::weak_ptr<Compiled>> known;
+    std::weak_ptr<Compiled>                                                      &one =
+      known[{formula, of_places ? (with_temperature ? "x, T" : "x") : variables}];
+    compiled = one.lock();
     if (compiled != nullptr)
       return;
     compiled = std::make_shared<Compiled>();
@@ -313,10 +324,12 @@ namespace PeriDeal
     refuse_assignment(formula, where);
     mu::Parser &parser = compiled->parser;
     define_names(parser);
-    parser.DefineVar("x", &compiled->x);
-    parser.DefineVar("y", &compiled->y);
-    parser.DefineVar("z", &compiled->z);
-    parser.DefineVar("t", &compiled->t);
+    std::vector<std::string> names{"x", "y", "z", "t"};
+    if (!is_of_places(variables))
+      names = split_list(variables, ',');
+    double *const places[] = {&compiled->x, &compiled->y, &compiled->z, &compiled->t};
+    for (unsigned int k = 0; k < names.size(); ++k)
+      parser.DefineVar(names[k], places[k]);
     if (with_temperature)
       parser.DefineVar("T", &compiled->T);
     int n_results = 0;

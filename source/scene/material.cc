@@ -79,11 +79,14 @@ namespace PeriDeal
       " The stretch at which bonds break follows from it. Without this and Critical stretch they do not break.";
     entry("Critical stretch") =
       "Relative extension at which a bond breaks, instead of Fracture energy" + formula;
-    declare(law.kind, "Law", "linear", {"linear", "viscoelastic"}) =
-      "Elasticity: how the force of a bond follows from its extension. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not.";
+    declare(law.kind, "Law", "linear", {"linear", "viscoelastic", "formula"}) =
+      "Elasticity: how the force of a bond follows from its extension. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `formula`: "
+      "by a formula of your own (`Bond force`).";
     declare("Relaxation", EntryType::list) =
       "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with "
       "exp(-t/time). A time is that of the section `Time`.";
+    declare("Bond force", EntryType::formula) =
+      "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0.";
     declare("Weibull modulus", EntryType::text, "", "1") =
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; "
       "a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
@@ -192,7 +195,7 @@ namespace PeriDeal
                          "is empty, which 'Law = " + name + "' needs.");
           return law.kind == kind;
         };
-      const std::string relaxation = "Relaxation";
+      const std::string relaxation = "Relaxation", force = "Bond force";
       law.relaxation.clear();
       if (belongs(relaxation, SolidLaw::viscoelastic, "viscoelastic"))
         {
@@ -211,6 +214,14 @@ namespace PeriDeal
                          relaxation,
                          "has shares of the shear modulus whose sum is " + number_text(sum) +
                            ", needs at most 1.");
+        }
+      if (belongs(force, SolidLaw::formula, "formula"))
+        {
+          law.bond_force       = Expression(section.text(force), section.where(force), "s, damage");
+          const double at_rest = law.bond_force.value(dealii::Point<2>());
+          section.refuse(at_rest != 0.,
+                         force,
+                         "is " + number_text(at_rest) + " at s = 0, where a bond has no force.");
         }
     }
   } // namespace
@@ -263,9 +274,13 @@ namespace PeriDeal
     if (fracture_energy && critical_stretch)
       error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
-    for (const std::string entry : {"Law", "Relaxation"})
+    for (const std::string entry : {"Law", "Relaxation", "Bond force"})
       refuse_unless_elastic(entry, physics);
     parse_law(*this, law);
+    if (law.kind == SolidLaw::formula && fracture_energy)
+      error(
+        "Fracture energy",
+        "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
     if (physics == Physics::elasticity)
       parse_moduli(dim, plane);
     else

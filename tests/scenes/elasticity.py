@@ -203,7 +203,7 @@ def creep(t, bulk=2.0, shear=1.0, rest=0.3, time=1.0):
 
 
 def laws():
-    """Laws of bonds: a plate that creeps against a closed form, in time of second order."""
+    """Laws of bonds: a plate that creeps against a closed form, in time of second order, and a bar by a formula."""
     table = Comparison("Creep of a plate in plane strain, stress 0.01")
     runs = [run_quietly("creeping_plate.prm", {"Time/Time step": step}, ranks=ranks) for step, ranks in (("0.2", 1), ("0.1", 2))]
     times = (0, 0.5, 1, 2, 4)
@@ -222,6 +222,12 @@ def laws():
         table.add(f"{model}: stored and turned into heat over what came in", (stored + heat) / brought, 1, absolute=1e-3)
         check(heat > 0.2 * work, f"{model}: the law dissipates")
     balanced(table, runs[1])
+    table.show()
+
+    table = Comparison("A bar whose bonds answer by a formula, E = 200")
+    for force, wanted in (("s - 5*s^2", 200 * (0.02 - 5 * 0.02**2)), ("s", 4), ("0.1*sin(10*s)", 20 * math.sin(0.2))):
+        run = run_quietly("bar_by_formula.prm", {"Material/Bond force": force})
+        table.add(f"stress with '{force}'", run.probe(PD, [0.5], column="sxx"), wanted, relative=1e-9)
     table.show()
 
 

@@ -4,6 +4,7 @@
 // Laws of bonds other than the linear one: by themselves, in peridynamics alone, beside elements.
 
 #include <perideal/base/archive.h>
+#include <perideal/laws/bond_force_formula.h>
 #include <perideal/laws/viscoelastic_solid.h>
 
 #include <cmath>
@@ -32,6 +33,14 @@ namespace
   double integral(const double t)
   {
     return 0.3 * t - 0.3 * std::expm1(-t) - 4. * std::expm1(-t / 10.);
+  }
+
+
+  Settings formula(const std::string &force)
+  {
+    return {{"Material/Law", "formula"},
+            {"Material/Bond force", force},
+            {"Elasticity/Solver", "conjugate gradients"}};
   }
 
 
@@ -147,6 +156,26 @@ TEST(ViscoelasticSolid, trials_leave_nothing_behind)
   law.effective({-2., 1.}, history.data());
   law.set_step(7.);
   EXPECT_EQ(law.effective({3., 1.}, history.data()), first);
+}
+
+
+TEST(BondForceFormula, energy_slope_and_the_linear_law)
+{
+  const BondForceFormula linear([](const double s, const double) { return s; });
+  const BondForceFormula curved(
+    [](const double s, const double damage) { return (1. - damage) * (s - 2. * s * s * s); });
+  for (const double product : {0.3, -0.01, 1e-7, 0.})
+    {
+      const BondValues bond{product, 1.7, 0.25};
+      EXPECT_EQ(linear.effective(bond, nullptr), product);
+      EXPECT_NEAR(linear.energy(bond, nullptr, false), 0.5 * product * product, 1e-15);
+      const double s = bond.stretch();
+      EXPECT_NEAR(curved.effective(bond, nullptr), 1.7 * 0.75 * (s - 2. * s * s * s), 1e-15);
+      EXPECT_NEAR(curved.energy(bond, nullptr, false),
+                  1.7 * 1.7 * 0.75 * (0.5 * s * s - 0.5 * s * s * s * s),
+                  1e-15);
+      EXPECT_NEAR(curved.slope(bond, nullptr), 0.75 * (1. - 6. * s * s), 1e-8);
+    }
 }
 
 
@@ -274,11 +303,43 @@ TEST(BondLaws, shear_modulus_relaxes)
 
 TEST(BondLaws, tangents_and_energies)
 {
+  const std::string curved = "s*(1 - 3*abs(s) + 5*s^2)";
   for (const Kind &kind : kinds<2>())
     {
       SCOPED_TRACE(kind.name);
       // The energy of a law with a history is that of the instant.
       for (const double t : {0., 1.5})
         has_energy<2>(solid<2>() + viscous + kind.more, kind.model, t);
+      if (kind.model != ModelKind::finite_elements)
+        has_energy<2>(solid<2>() + kind.more + formula(curved), kind.model, 0.);
+    }
+  has_energy<2>(solid<2>() + kinds<2>()[4].more +
+                  Settings{{"Coupling/Scheme", "exchange"},
+                           {"Coupling/Zone", "everywhere"},
+                           {"Coupling/Overlap", "0"}} +
+                  formula(curved),
+                ModelKind::coupled,
+                0.);
+}
+
+
+TEST(BondLaws, formula_of_the_linear_law)
+{
+  for (const bool full : {false, true})
+    {
+      const Settings settings =
+        solid<2>() + Settings{{"Elasticity/Solver", "conjugate gradients"},
+                              {"Elasticity/Kinematics", full ? "full" : "linear"},
+                              {"Peridynamics/Operator form", "stored"}};
+      const Body<2> linear(settings, ModelKind::peridynamics),
+        by_formula(settings + formula("s"), ModelKind::peridynamics);
+      const Vector u =
+        linear.values([](const Point<2> &p) { return Tensor<1, 2>(0.1 * bumpy_vector<2>(p)); });
+      Vector a(u), b(u);
+      linear.op().unbalanced(a, u, 0.);
+      by_formula.op().unbalanced(b, u, 0.);
+      // Full kinematics of the linear law take several bonds at once.
+      EXPECT_LE(worst_difference(a, b), full ? 1e-13 * a.linfty_norm() : 0.);
+      EXPECT_NEAR(linear.op().energy(u), by_formula.op().energy(u), 1e-13 * linear.op().energy(u));
     }
 }

@@ -123,7 +123,8 @@ namespace PeriDeal
   enum class SolidLaw
   {
     linear,
-    viscoelastic
+    viscoelastic,
+    formula
   };
 
   /**

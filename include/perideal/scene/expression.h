@@ -39,7 +39,8 @@ namespace PeriDeal
      * @param where entry and section for messages, for example "'Source' in section 'Initial and
      *              source'" Throws UserError with the position and what is wrong.
      * @param known the variables that messages list. That a formula has no others (t where nothing
-     *              may change) is for the one who reads it to ask.
+     *              may change) is for the one who reads it to ask. Other names than x, y, z, t are
+     *              those of the coordinates of value(), in their order.
      * @param with_temperature T is a variable, too
      */
     Expression(const std::string &text,

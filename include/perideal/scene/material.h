@@ -50,6 +50,7 @@ namespace PeriDeal
     {
       SolidLaw                kind;
       std::vector<Relaxation> relaxation; // viscoelastic
+      Expression              bond_force; // formula: of the stretch s and the damage
     } law;
 
     bool uniform_conductivity() const;

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/instantiate.h>
+#include <perideal/laws/bond_force_formula.h>
 #include <perideal/laws/viscoelastic_solid.h>
 #include <perideal/operators/solid/law_steps.h>
 #include <perideal/scene/expression.h>
@@ -24,6 +25,12 @@ namespace PeriDeal
         {SolidLaw::viscoelastic,
          [](const Material::Law &law) {
            return std::make_unique<ViscoelasticSolid>(law.relaxation);
+         }},
+        {SolidLaw::formula, [](const Material::Law &law) {
+           return std::make_unique<BondForceFormula>(
+             [force = law.bond_force](const double s, const double damage) {
+               return force.value(dealii::Point<2>(s, damage));
+             });
          }}};
       return list;
     }
@@ -77,6 +84,10 @@ namespace PeriDeal
       "Scheme",
       "found '" + body.coupling.text("Scheme") +
         "', whose bonds take over bulk stiffness, too; with 'Law = viscoelastic' in section 'Material' use 'blending'.");
+    material.refuse(
+      kind == SolidLaw::formula && by_elements && !coupled,
+      "Law",
+      "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
     material.refuse(by_elements && (body.elasticity.computes_temperature ||
                                     !is_zero(body.elasticity.temperature_change)),
                     "Law",
@@ -93,6 +104,10 @@ namespace PeriDeal
       "Law",
       "'viscoelastic' is for 'Plane = strain' in section 'Elasticity': in plane stress "
       "the strain out of the plane would relax, too.");
+    body.elasticity.refuse(
+      kind == SolidLaw::formula && body.elasticity.solver == ElasticSolver::linear,
+      "Solver",
+      "is 'linear', but 'Law = formula' in section 'Material' is not. Use 'conjugate gradients', or 'dynamics'.");
     body.elasticity.refuse(body.elasticity.absolute_reference.has_value(),
                            "Heat of deformation",
                            "is that of the linear law; 'Law' in section 'Material' is '" +
