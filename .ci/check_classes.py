@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Check how wide classes are: at most 25 functions, 12 members, 12 virtual functions, defined in at most two sources.
+"""Check how wide classes are: at most 25 functions, 12 members, 12 virtual functions, defined in at most two sources; and how long functions are: 60 lines.
 
     check_classes.py          one line for each finding; exit status 1 if there is any
     check_classes.py widest   the widest classes
     check_classes.py entries  what WIDER would have to say
 
-A class that was wider when the limits came is in WIDER with what it has; it may only get narrower, and its entry with it.
+A class that was wider when the limits came is in WIDER with what it has; it may only get narrower, and its entry with it. Likewise LONGER.
 Defaulted and deleted functions, types and friends do not count.
 """
 
@@ -53,6 +53,52 @@ WIDER = {
     "source/solvers/rkc2.cc": {"RKC2": (19, 15, 0)},
     "source/study/model_choice.cc": {"Choice": (22, 17, 0)},
 }
+
+
+MAX_FUNCTION = 60
+
+# file: lines of its functions that are longer, the longest first
+LONGER = {
+    "source/mesh/nodes.cc": [67],
+    "source/operators/bounds/local_bound.cc": [67],
+    "source/operators/diffusion/heat_surface_factors.cc": [66],
+    "source/operators/solid/displacement_conditions.cc": [63],
+    "source/operators/solid/elastic_elements.cc": [66],
+    "source/operators/solid/least_additions.h": [62],
+    "source/operators/solid/zone_breaking.cc": [80],
+    "source/problems/bond_solid.cc": [67],
+    "source/problems/element_diffusion.cc": [61],
+    "source/problems/solid_results.cc": [67],
+    "source/scene/domain.cc": [68],
+    "source/scene/hole_rims.cc": [78],
+    "source/solvers/implicit_stepper.cc": [64],
+    "applications/perideal.cc": [63],
+}
+
+
+def long_functions(path):
+    """How many lines the bodies of functions have that are too long, as clang-format sets them; the longest first."""
+    with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    found = []
+    for number, line in enumerate(lines):
+        before = lines[number - 1].strip() if number else ""
+        is_function = re.search(r"\)( const)?( override)?( noexcept)?$|^[:,] .*[)}]$", before) and not re.match(r"(if|for|while|switch|else)\b", before)
+        if line.strip() == "{" and is_function:
+            end = next((n for n in range(number + 1, len(lines)) if lines[n] == line.replace("{", "}")), number)
+            if end - number - 1 > MAX_FUNCTION:
+                found.append(end - number - 1)
+    return sorted(found, reverse=True)
+
+
+def too_long():
+    for folder in ("include", "source", "applications"):
+        for path in files(folder, (".h", ".cc")):
+            found, allowed = long_functions(path), LONGER.get(path, [])
+            if len(found) > len(allowed) or any(a > b for a, b in zip(found, allowed)):
+                yield f"{path}: functions of {', '.join(map(str, found))} lines; at most {MAX_FUNCTION}" + (f", and those that are longer may only get shorter than {allowed}" if allowed else "")
+            elif found != allowed:
+                yield f"{path}: its long functions are shorter than LONGER (.ci/check_classes.py) says: " + (f"that is {found} now" if found else "take that out")
 
 
 def without_comments(text):
@@ -156,6 +202,7 @@ def main():
     for name, sources in sorted(sources_of_classes().items()):
         if name in names and len(sources) > LIMITS["sources"]:
             findings.append(f"{name} is defined in {len(sources)} sources ({', '.join(sorted(sources))}); at most {LIMITS['sources']}")
+    findings += too_long()
     if sys.argv[1:] == ["widest"]:
         for place, kind in enumerate(kinds):
             print(f"Most {kind}:")

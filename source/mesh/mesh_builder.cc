@@ -294,6 +294,43 @@ namespace PeriDeal
       mesh->signals.post_refinement.connect(partition);
       return mesh;
     }
+
+    /** Coarse cells, and how often they are to be refined. @param ids of the faces of a file */
+    template <int dim>
+    std::pair<CoarseMesh<dim>, unsigned int> coarse_mesh(const Scene<dim> &scene,
+                                                         const std::vector<CrackGeometry<dim>> &cut,
+                                                         const MPI_Comm            communicator,
+                                                         BoundaryIds              &ids,
+                                                         std::vector<std::string> &notes)
+    {
+      const Domain<dim> &domain = scene.domain;
+      CoarseMesh<dim>    coarse;
+      unsigned int       n_refinements = 0;
+      if (!domain.has_lattice())
+        {
+          coarse = read_mesh_file<dim>(domain.mesh_file, domain.files.folder, communicator, ids);
+          note_cracks_on_faces(coarse, scene.cracks, notes);
+        }
+      else if (domain.shape == Shape::plate_with_hole)
+        {
+          coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
+            return !domain.holes.contains(p);
+          });
+          AssertThrow(
+            !coarse.cells.empty(),
+            UserError("'Hole radius' in section 'Domain': the hole leaves no cell of the plate."));
+        }
+      else if (domain.has_voids()) // of an image
+        coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
+          return domain.has_cell_at(p);
+        });
+      else
+        std::tie(coarse, n_refinements) = box_mesh(domain, cut);
+      notes.insert(notes.end(), domain.notes.begin(), domain.notes.end());
+      if (domain.shape != Shape::box && n_refinements == 0)
+        require_resolved(coarse, cut);
+      return {std::move(coarse), n_refinements};
+    }
   } // namespace
 
 
@@ -308,32 +345,8 @@ namespace PeriDeal
     if (cracks.on_faces())
       cut = make_crack_geometries(cracks.pieces(0.));
 
-    CoarseMesh<dim> coarse;
-    BoundaryIds     ids;
-    unsigned int    n_refinements = 0;
-    if (!domain.has_lattice())
-      {
-        coarse = read_mesh_file<dim>(domain.mesh_file, domain.files.folder, communicator, ids);
-        note_cracks_on_faces(coarse, cracks, notes);
-      }
-    else if (domain.shape == Shape::plate_with_hole)
-      {
-        coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
-          return !domain.holes.contains(p);
-        });
-        AssertThrow(
-          !coarse.cells.empty(),
-          UserError("'Hole radius' in section 'Domain': the hole leaves no cell of the plate."));
-      }
-    else if (domain.has_voids()) // of an image
-      coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
-        return domain.has_cell_at(p);
-      });
-    else
-      std::tie(coarse, n_refinements) = box_mesh(domain, cut);
-    notes.insert(notes.end(), domain.notes.begin(), domain.notes.end());
-    if (domain.shape != Shape::box && n_refinements == 0)
-      require_resolved(coarse, cut);
+    BoundaryIds ids;
+    auto [coarse, n_refinements] = coarse_mesh(scene, cut, communicator, ids, notes);
     AssertThrow(n_refinements >= domain.coarsening.times,
                 UserError("'Coarsening' in section 'Domain' is " +
                           std::to_string(domain.coarsening.times) +

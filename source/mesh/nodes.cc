@@ -547,6 +547,45 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Shares of parts of sides, from pieces in order. */
+    template <int dim>
+    void add_pieces(const BoundaryConditions<dim>    &conditions,
+                    const std::vector<Piece<dim>>    &pieces,
+                    const std::vector<BoundaryShare> &shares,
+                    const std::vector<Point<dim>>    &positions,
+                    std::vector<BoundaryShare>       &with_parts)
+    {
+      for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end)
+        {
+          BoundaryShare  share{pieces[begin].node, pieces[begin].id, 0., false, {}};
+          Tensor<1, dim> moment;
+          for (;
+               end < pieces.size() && pieces[end].node == share.node && pieces[end].id == share.id;
+               ++end)
+            {
+              share.area += pieces[end].area;
+              moment += pieces[end].moment;
+              share.inside = share.inside || pieces[end].inside;
+            }
+          // Of an area that the part cuts, the middle: pieces of one node add up to what it has of a
+          // load that is a straight line.
+          const types::boundary_id side  = conditions.side_of(share.id);
+          const auto               whole = std::lower_bound(
+            shares.begin(),
+            shares.end(),
+            std::pair(share.node, side),
+            [](const BoundaryShare &a, const auto &b) { return std::pair(a.node, a.id) < b; });
+          const bool is_cut = share.area > 0. && share.area < (1. - 1e-9) * whole->area;
+          for (unsigned int d = 0; d < dim; ++d)
+            share.place[d] = is_cut ? moment[d] / share.area : positions[share.node][d];
+          with_parts.push_back(share);
+        }
+    }
+  } // namespace
+
+
   template <int dim>
   Nodes<dim> &Nodes<dim>::find_parts(const BoundaryConditions<dim> &conditions)
   {
@@ -604,30 +643,7 @@ namespace PeriDeal
       return a.key() < b.key();
     });
     with_parts = shares;
-    for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end)
-      {
-        BoundaryShare  share{pieces[begin].node, pieces[begin].id, 0., false, {}};
-        Tensor<1, dim> moment;
-        for (; end < pieces.size() && pieces[end].node == share.node && pieces[end].id == share.id;
-             ++end)
-          {
-            share.area += pieces[end].area;
-            moment += pieces[end].moment;
-            share.inside = share.inside || pieces[end].inside;
-          }
-        // Of an area that the part cuts, the middle: pieces of one node add up to what it has of a
-        // load that is a straight line.
-        const types::boundary_id side  = conditions.side_of(share.id);
-        const auto               whole = std::lower_bound(
-          shares.begin(),
-          shares.end(),
-          std::pair(share.node, side),
-          [](const BoundaryShare &a, const auto &b) { return std::pair(a.node, a.id) < b; });
-        const bool is_cut = share.area > 0. && share.area < (1. - 1e-9) * whole->area;
-        for (unsigned int d = 0; d < dim; ++d)
-          share.place[d] = is_cut ? moment[d] / share.area : positions[share.node][d];
-        with_parts.push_back(share);
-      }
+    add_pieces(conditions, pieces, shares, positions, with_parts);
     for (const PartNode &node :
          nodes_of_parts(conditions,
                         std::vector<Point<dim>>(positions.begin(), positions.begin() + owned_count),

@@ -126,35 +126,36 @@ namespace PeriDeal
     }
 
 
-    /**
-     * What a body of bonds alone lacks along sides that cut families, or conducts too much or too
-     * little between sides with given values; why it is of bonds alone, and what to do.
-     */
-    template <int dim>
-    std::string note_on_cut_families(const Scene<dim> &scene, const KernelWeights<dim> &weights)
+    /** What sides that cut families make a body of bonds alone look like. */
+    struct CutFamilies
     {
-      const Peridynamics &p = scene.peridynamics;
-      if (!scene.domain.has_lattice() || weights.members().empty() ||
-          p.surface_correction == SurfaceCorrection::energy)
-        return {};
-      const auto cut        = sides_that_cut(scene);
-      const bool partial    = p.nodal_volume == NodalVolume::partial,
-                 at_centers = scene.domain.has_nodes_at_centers(),
-                 of_itself  = !p.is_given("Boundary treatment");
-      const double first_row = at_centers || !partial ? 1. : 0.5;
-      double       most = 0., width = 0., longest = 0., length = 0.;
+      double       most = 0., width = 0.;     // share of the width that is missing, along an axis
+      double       longest = 0., length = 0.; // of what is too long, between given values
       unsigned int axis = 0, along = 0;
+    };
+
+
+    template <int dim>
+    CutFamilies find_cut_families(const Scene<dim>                &scene,
+                                  const KernelWeights<dim>        &weights,
+                                  const std::array<bool, 2 * dim> &cut)
+    {
+      const Peridynamics &p       = scene.peridynamics;
+      const bool          partial = p.nodal_volume == NodalVolume::partial,
+                 at_centers       = scene.domain.has_nodes_at_centers();
+      const double first_row      = at_centers || !partial ? 1. : 0.5;
+      CutFamilies  result;
       for (unsigned int d = 0; d < dim; ++d)
         {
           const double cells = scene.domain.cells[d];
           if (const unsigned int n = cut[2 * d] + cut[2 * d + 1]; dim > 1 && n > 0)
             {
               const double one = missing_width<dim>(weights.members(), d, first_row);
-              if (n * one / cells > most)
+              if (n * one / cells > result.most)
                 {
-                  most  = n * one / cells;
-                  width = one * scene.domain.spacing()[d];
-                  axis  = d;
+                  result.most  = n * one / cells;
+                  result.width = one * scene.domain.spacing()[d];
+                  result.axis  = d;
                 }
             }
           if (const unsigned int n = n_given(scene, d);
@@ -166,14 +167,33 @@ namespace PeriDeal
                                                      scene.domain.cells[d] + (at_centers ? 0 : 1),
                                                      first_row,
                                                      at_centers);
-              if (std::abs(extra) / cells > std::abs(longest))
+              if (std::abs(extra) / cells > std::abs(result.longest))
                 {
-                  longest = extra / cells;
-                  length  = extra * scene.domain.spacing()[d];
-                  along   = d;
+                  result.longest = extra / cells;
+                  result.length  = extra * scene.domain.spacing()[d];
+                  result.along   = d;
                 }
             }
         }
+      return result;
+    }
+
+
+    /**
+     * What a body of bonds alone lacks along sides that cut families, or conducts too much or too
+     * little between sides with given values; why it is of bonds alone, and what to do.
+     */
+    template <int dim>
+    std::string note_on_cut_families(const Scene<dim> &scene, const KernelWeights<dim> &weights)
+    {
+      const Peridynamics &p = scene.peridynamics;
+      if (!scene.domain.has_lattice() || weights.members().empty() ||
+          p.surface_correction == SurfaceCorrection::energy)
+        return {};
+      const auto cut       = sides_that_cut(scene);
+      const bool of_itself = !p.is_given("Boundary treatment");
+      const auto [most, width, longest, length, axis, along] =
+        find_cut_families(scene, weights, cut);
       if (!of_itself && most < tolerable_missing_share &&
           std::abs(longest) < tolerable_missing_share)
         return {};

@@ -600,6 +600,35 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** What the rows of the ends of cracks are, told by row(quantity, value). Collective. */
+    template <int dim, typename Row>
+    nlohmann::ordered_json intensities(const SolidField<dim> &body, const double t, const Row &row)
+    {
+      nlohmann::ordered_json ends = nlohmann::ordered_json::object();
+      // Where bonds have broken cracks end elsewhere.
+      const bool grown = body.op().n_broken_bonds() > 0;
+      for (const StressIntensity &end :
+           grown ? std::vector<StressIntensity>() : body.stress_intensities(t))
+        {
+          row("J-integral at " + end.name, end.j);
+          row("stress intensity I at " + end.name, end.mode_1);
+          row("stress intensity II at " + end.name, end.mode_2);
+          ends[end.name] = {{"J-integral", end.j}, {"I", end.mode_1}, {"II", end.mode_2}};
+          if (end.mode_3)
+            {
+              row("stress intensity III at " + end.name, *end.mode_3);
+              ends[end.name]["III"] = *end.mode_3;
+            }
+          if (end.place)
+            ends[end.name]["place"] = {(*end.place)[0], (*end.place)[1], (*end.place)[2]};
+        }
+      return ends;
+    }
+  } // namespace
+
+
   template <int dim>
   void SolidProblem<dim>::add_totals(const double t, const RunContext &context)
   {
@@ -644,25 +673,8 @@ namespace PeriDeal
             row("mean stress " + name, mean[a][b]);
             stress[name] = mean[a][b];
           }
-    stress["von mises"]         = von_mises(mean);
-    nlohmann::ordered_json ends = nlohmann::ordered_json::object();
-    // Where bonds have broken cracks end elsewhere.
-    const bool grown = op().n_broken_bonds() > 0;
-    for (const StressIntensity &end :
-         grown ? std::vector<StressIntensity>() : body.stress_intensities(t))
-      {
-        row("J-integral at " + end.name, end.j);
-        row("stress intensity I at " + end.name, end.mode_1);
-        row("stress intensity II at " + end.name, end.mode_2);
-        ends[end.name] = {{"J-integral", end.j}, {"I", end.mode_1}, {"II", end.mode_2}};
-        if (end.mode_3)
-          {
-            row("stress intensity III at " + end.name, *end.mode_3);
-            ends[end.name]["III"] = *end.mode_3;
-          }
-        if (end.place)
-          ends[end.name]["place"] = {(*end.place)[0], (*end.place)[1], (*end.place)[2]};
-      }
+    stress["von mises"]                   = von_mises(mean);
+    const nlohmann::ordered_json ends     = intensities(body, t, row);
     context.record.balances[this->name()] = {{"boundary force", balance.sides},
                                              {"strain energy", energy},
                                              {"mean stress", stress}};

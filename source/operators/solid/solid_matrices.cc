@@ -16,6 +16,102 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** Neighbours so near that they share a cell, by the size of the cells at a node. */
+    template <int dim>
+    bool is_near(const Nodes<dim> &nodes, const unsigned int i, const Tensor<1, dim> &xi)
+    {
+      if (!nodes.lattice())
+        return xi.norm() < 1.8 * std::pow(nodes.volume(i), 1. / dim);
+      bool is = true;
+      for (unsigned int d = 0; d < dim; ++d)
+        is = is && std::abs(xi[d]) < 1.5 * nodes.lattice()->spacing[d];
+      return is;
+    }
+
+
+    /** The nearest neighbours of owned nodes over unbroken bonds. */
+    struct NearBonds
+    {
+      std::vector<std::size_t>  first{0};
+      std::vector<unsigned int> near;
+      std::vector<bool>         damaged; // nodes that have lost some
+      Vector                    sums;    // of V x^2 of all of them, as q; ghosts up to date
+    };
+
+
+    template <int dim>
+    NearBonds find_near_bonds(const SolidBonds<dim> &bonds)
+    {
+      const Families<dim> &families = bonds.families;
+      const Nodes<dim>    &nodes    = families.nodes();
+      NearBonds            found;
+      found.damaged.resize(nodes.n_owned(), false);
+      found.sums.reinit(nodes.partitioner());
+      std::vector<UnitBond<dim>> close; // those that are near
+      std::copy_if(bonds.rows.body.units.begin(),
+                   bonds.rows.body.units.end(),
+                   std::back_inserter(close),
+                   [](const UnitBond<dim> &bond) {
+                     return std::all_of(bond.offset.begin(), bond.offset.end(), [](const int n) {
+                       return std::abs(n) <= 1;
+                     });
+                   });
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        {
+          const auto add_near = [&](const auto &bond) {
+            const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+            if (!is_near(nodes, i, xi) && !is_near(nodes, bond.neighbor, xi))
+              return;
+            // As q, that of the body before bonds broke.
+            found.sums.local_element(i) += nodes.volume(bond.neighbor) * xi.norm_square();
+            if (bonds.rows.is_whole(bond.number))
+              found.near.push_back(bond.neighbor);
+            else
+              found.damaged[i] = true;
+          };
+          if (bonds.rows.is_on_lattice(i))
+            bonds.rows.for_each_of(i, close, add_near);
+          else
+            bonds.rows.for_each_stored(i, add_near);
+          found.first.push_back(found.near.size());
+        }
+      found.sums.update_ghost_values();
+      return found;
+    }
+
+
+    /** A matrix of zeros with these bonds. Collective. */
+    template <int dim>
+    void make_pattern(const Nodes<dim>                  &nodes,
+                      const Utilities::MPI::Partitioner &unknowns,
+                      const NearBonds                   &found,
+                      TrilinosWrappers::SparseMatrix    &matrix)
+    {
+      TrilinosWrappers::SparsityPattern    pattern(unknowns.locally_owned_range(),
+                                                nodes.communicator(),
+                                                dim * (dim == 3 ? 27 :
+                                                          dim == 2 ? 9 :
+                                                                     3));
+      std::vector<types::global_dof_index> columns;
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        {
+          columns.clear();
+          for (unsigned int d = 0; d < dim; ++d)
+            columns.push_back(unknowns.local_to_global(dim * i + d));
+          for (std::size_t n = found.first[i]; n < found.first[i + 1]; ++n)
+            for (unsigned int d = 0; d < dim; ++d)
+              columns.push_back(unknowns.local_to_global(dim * found.near[n] + d));
+          for (unsigned int d = 0; d < dim; ++d)
+            pattern.add_entries(columns[d], columns.begin(), columns.end());
+        }
+      pattern.compress();
+      matrix.reinit(pattern);
+    }
+  } // namespace
+
+
   template <int dim>
   void make_surrogate(const SolidBonds<dim>          &bonds,
                       const BodyParameters<dim>      &body,
@@ -26,68 +122,8 @@ namespace PeriDeal
     const Families<dim>               &families = bonds.families;
     const Nodes<dim>                  &nodes    = families.nodes();
     const Utilities::MPI::Partitioner &unknowns = *diagonal.get_partitioner();
-    const IndexSet                     owned    = unknowns.locally_owned_range();
-    std::vector<std::size_t>           first{0};
-    std::vector<unsigned int>          near; // neighbours, of unbroken bonds
-    std::vector<bool>                  damaged(nodes.n_owned(), false);
-    Vector                             sums(nodes.partitioner());
-    const auto is_near = [&](const unsigned int i, const Tensor<1, dim> &xi) {
-      if (!nodes.lattice())
-        return xi.norm() < 1.8 * std::pow(nodes.volume(i), 1. / dim);
-      bool is = true;
-      for (unsigned int d = 0; d < dim; ++d)
-        is = is && std::abs(xi[d]) < 1.5 * nodes.lattice()->spacing[d];
-      return is;
-    };
-    std::vector<UnitBond<dim>> close; // those that are near
-    std::copy_if(bonds.rows.body.units.begin(),
-                 bonds.rows.body.units.end(),
-                 std::back_inserter(close),
-                 [](const UnitBond<dim> &bond) {
-                   return std::all_of(bond.offset.begin(), bond.offset.end(), [](const int n) {
-                     return std::abs(n) <= 1;
-                   });
-                 });
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        const auto add_near = [&](const auto &bond) {
-          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
-          if (!is_near(i, xi) && !is_near(bond.neighbor, xi))
-            return;
-          // As q, that of the body before bonds broke.
-          sums.local_element(i) += nodes.volume(bond.neighbor) * xi.norm_square();
-          if (bonds.rows.is_whole(bond.number))
-            near.push_back(bond.neighbor);
-          else
-            damaged[i] = true;
-        };
-        if (bonds.rows.is_on_lattice(i))
-          bonds.rows.for_each_of(i, close, add_near);
-        else
-          bonds.rows.for_each_stored(i, add_near);
-        first.push_back(near.size());
-      }
-    sums.update_ghost_values();
-
-    TrilinosWrappers::SparsityPattern    pattern(owned,
-                                              nodes.communicator(),
-                                              dim * (dim == 3 ? 27 :
-                                                        dim == 2 ? 9 :
-                                                                   3));
-    std::vector<types::global_dof_index> columns;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        columns.clear();
-        for (unsigned int d = 0; d < dim; ++d)
-          columns.push_back(unknowns.local_to_global(dim * i + d));
-        for (std::size_t n = first[i]; n < first[i + 1]; ++n)
-          for (unsigned int d = 0; d < dim; ++d)
-            columns.push_back(unknowns.local_to_global(dim * near[n] + d));
-        for (unsigned int d = 0; d < dim; ++d)
-          pattern.add_entries(columns[d], columns.begin(), columns.end());
-      }
-    pattern.compress();
-    matrix.reinit(pattern);
+    const NearBonds                    found    = find_near_bonds(bonds);
+    make_pattern(nodes, unknowns, found, matrix);
     const auto stiffness_of = [&](const unsigned int i) {
       const Moduli moduli = body.material.moduli(nodes.position(i));
       return bond_law(moduli, dim, body.elasticity.plane).extension;
@@ -109,14 +145,14 @@ namespace PeriDeal
                 matrix.set(unknowns.local_to_global(row), unknowns.local_to_global(column), value);
               }
         };
-        for (std::size_t n = first[i]; n < first[i + 1]; ++n)
+        for (std::size_t n = found.first[i]; n < found.first[i + 1]; ++n)
           {
-            const unsigned int   j  = near[n];
-            const Tensor<1, dim> xi = families.neighbors().bond_vector(i, j);
-            const double         spring =
-              nodes.volume(i) * nodes.volume(j) *
-              (extension[i] / sums.local_element(i) + extension[j] / sums.local_element(j)) /
-              xi.norm_square();
+            const unsigned int   j      = found.near[n];
+            const Tensor<1, dim> xi     = families.neighbors().bond_vector(i, j);
+            const double         spring = nodes.volume(i) * nodes.volume(j) *
+                                  (extension[i] / found.sums.local_element(i) +
+                                   extension[j] / found.sums.local_element(j)) /
+                                  xi.norm_square();
             const Tensor<2, dim> block = spring * outer_product(xi, xi);
             own += block;
             add(j, -block);
@@ -125,12 +161,12 @@ namespace PeriDeal
         bonds.rows.for_each_beyond(i, [&](const auto &bond) {
           const Tensor<1, dim> xi = bonds.ends.vector(i, bond.neighbor);
           if (bonds.rows.is_whole(bond.number) && bonds.ends.is_own_image(i, bond.neighbor) &&
-              is_near(i, xi))
+              is_near(nodes, i, xi))
             own += 4. * nodes.volume(i) * bonds.ends.volume(bond.neighbor) * extension[i] /
-                   sums.local_element(i) / xi.norm_square() * outer_product(xi, xi);
+                   found.sums.local_element(i) / xi.norm_square() * outer_product(xi, xi);
         });
         // Springs alone would not hold every node, and hardly those that few are left of.
-        const double share = own == Tensor<2, dim>() ? 1. : damaged[i] ? 1e-2 : 1e-8;
+        const double share = own == Tensor<2, dim>() ? 1. : found.damaged[i] ? 1e-2 : 1e-8;
         for (unsigned int d = 0; d < dim; ++d)
           own[d][d] += share * diagonal.local_element(dim * i + d);
         add(i, own);
