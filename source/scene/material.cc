@@ -82,10 +82,10 @@ namespace PeriDeal
     declare(law.kind, "Law", "linear", {"linear", "viscoelastic", "formula"}) =
       "Elasticity: how the force of a bond follows from its extension. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `formula`: "
       "by a formula of your own (`Bond force`).";
-    declare("Relaxation", EntryType::list) =
+    declare("Relaxation", EntryType::list, "", "1, time") =
       "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with "
       "exp(-t/time). A time is that of the section `Time`.";
-    declare("Bond force", EntryType::formula) =
+    declare("Bond force", EntryType::formula, "", "1") =
       "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0.";
     declare("Weibull modulus", EntryType::text, "", "1") =
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; "

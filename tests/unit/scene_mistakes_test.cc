@@ -189,6 +189,33 @@ Boundary conditions/Velocity=left: 1, free => 'Velocity' | 'left' | displacement
   }
 
 
+  TEST(SceneMistakes, of_laws)
+  {
+    expect_said(elastic_and({"Models=peridynamics", "Elasticity/Plane=strain"}), R"(
+Material/Law=visco => 'Law' in section 'Material' | visco | viscoelastic
+Material/Relaxation=0.5, 1 => 'Relaxation' | 'Law = viscoelastic' | 'linear'
+Material/Bond force=s => 'Bond force' | 'Law = formula' | 'linear'
+Material/Law=viscoelastic => 'Relaxation' | is empty
+Material/Law=viscoelastic & Material/Relaxation=0.5 => 'Relaxation' | a share and a time
+Material/Law=viscoelastic & Material/Relaxation=0.5, 0 => 'Relaxation' | '0.5, 0' | greater than 0
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 ; 0.6, 2 => 'Relaxation' | 1.1 | at most 1
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Plane=stress => 'Law' | 'Plane = strain'
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Model=bond-based => 'Law' | 'Model = state-based'
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Time/Steady=true => 'Steady' | 'Law = viscoelastic'
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Models=coupled & Coupling/Zone=everywhere => 'Scheme' | 'exchange' | 'blending'
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Models=finite elements & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'Temperature change' | 'Models = peridynamics'
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Peridynamics/Operator form=lattice => 'Operator form' | 'Law' | 'auto'
+Material/Law=formula => 'Bond force' | is empty
+Material/Law=formula & Material/Bond force=s+ => 'Bond force' | column 2
+Material/Law=formula & Material/Bond force=2*x => 'Bond force' | 'x' | s, damage
+Material/Law=formula & Material/Bond force=s+1 => 'Bond force' | is 1 at s = 0
+Material/Law=formula & Material/Bond force=s => 'Solver' | 'linear' | 'conjugate gradients'
+Material/Law=formula & Material/Bond force=s & Material/Fracture energy=1 => 'Fracture energy' | 'Critical stretch'
+Material/Law=formula & Material/Bond force=s & Models=finite elements & Elasticity/Solver=conjugate gradients => 'Law' | 'finite elements'
+)");
+  }
+
+
   TEST(SceneMistakes, of_bonds_that_break)
   {
     expect_said(elastic_and({"Models=peridynamics", "Material/Fracture energy=1"}), R"(

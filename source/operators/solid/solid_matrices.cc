@@ -16,6 +16,16 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  /** The nearest neighbours of owned nodes over unbroken bonds. */
+  struct NearBonds
+  {
+    std::vector<std::size_t>  first{0};
+    std::vector<unsigned int> near;
+    std::vector<bool>         damaged; // nodes that have lost some
+    Vector                    sums;    // of V x^2 of all of them, as q; ghosts up to date
+  };
+
+
   namespace
   {
     /** Neighbours so near that they share a cell, by the size of the cells at a node. */
@@ -29,16 +39,6 @@ namespace PeriDeal
         is = is && std::abs(xi[d]) < 1.5 * nodes.lattice()->spacing[d];
       return is;
     }
-
-
-    /** The nearest neighbours of owned nodes over unbroken bonds. */
-    struct NearBonds
-    {
-      std::vector<std::size_t>  first{0};
-      std::vector<unsigned int> near;
-      std::vector<bool>         damaged; // nodes that have lost some
-      Vector                    sums;    // of V x^2 of all of them, as q; ghosts up to date
-    };
 
 
     template <int dim>
