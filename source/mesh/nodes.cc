@@ -569,8 +569,8 @@ namespace PeriDeal
               moment += pieces[end].moment;
               share.inside = share.inside || pieces[end].inside;
             }
-          // Of an area that the part cuts, the middle: pieces of one node add up to what it has of a
-          // load that is a straight line.
+          // Of an area that the part cuts, the middle: pieces of one node add up to what it has of
+          // a load that is a straight line.
           const types::boundary_id side  = conditions.side_of(share.id);
           const auto               whole = std::lower_bound(
             shares.begin(),

@@ -7,6 +7,7 @@
 #include <perideal/scene/relaxation.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -30,7 +31,7 @@ namespace PeriDeal
     {
       for (const Relaxation &term : terms)
         {
-          branches.push_back({term.share, term.time, 1., 1., 0.});
+          branches.push_back({term.share, term.time, std::sqrt(term.share), 1., 1., 0., {}});
           rest = std::max(0., rest - term.share);
         }
     }
@@ -57,6 +58,14 @@ namespace PeriDeal
           branch.ratio = dt / branch.time;
           branch.decay = std::exp(-branch.ratio);
           branch.gain  = branch.ratio > 0. ? -std::expm1(-branch.ratio) / branch.ratio : 1.;
+          // Of the dissipated parts: the integral of h^2/T is a d^2 + 2 b d c + r c^2.
+          const double a = -0.5 * std::expm1(-2. * branch.ratio), b = branch.gain * branch.ratio;
+          const double factor = std::sqrt(2.) * branch.root;
+          branch.of_parts     = {{0., 0., 0.}};
+          if (branch.ratio > 0.)
+            branch.of_parts = {{factor * std::sqrt(a),
+                                factor * b / std::sqrt(a),
+                                factor * std::sqrt(std::max(0., branch.ratio - b * b / a))}};
         }
     }
 
@@ -92,16 +101,13 @@ namespace PeriDeal
     {
       if (!dissipated)
         return k == 0 ? std::sqrt(rest) * bond.product :
-                        std::sqrt(branches[k - 1].share) * now(k - 1, bond.product, history);
+                        branches[k - 1].root * now(k - 1, bond.product, history);
       const Branch &branch = branches[k / 2];
       if (!(branch.ratio > 0.))
         return 0.;
-      const double c = (bond.product - history[0]) / branch.ratio, d = history[1 + k / 2] - c;
-      // The integral is a d^2 + 2 b d c + r c^2.
-      const double a = -0.5 * std::expm1(-2. * branch.ratio), b = branch.gain * branch.ratio;
-      return std::sqrt(2. * branch.share) *
-             (k % 2 == 0 ? std::sqrt(a) * d + b / std::sqrt(a) * c :
-                           std::sqrt(std::max(0., branch.ratio - b * b / a)) * c);
+      const double c = (bond.product - history[0]) / branch.ratio;
+      return k % 2 == 0 ? branch.of_parts[0] * (history[1 + k / 2] - c) + branch.of_parts[1] * c :
+                          branch.of_parts[2] * c;
     }
 
     void accept(const BondValues &bond, double *history) const override
@@ -114,8 +120,10 @@ namespace PeriDeal
   private:
     struct Branch
     {
-      double share, time;
+      double share, time, root;  // of the share
       double decay, gain, ratio; // E, (1 - E)/r, r of the step
+
+      std::array<double, 3> of_parts;
     };
 
     double now(const unsigned int k, const double product, const double *history) const

@@ -237,61 +237,48 @@ namespace PeriDeal
 
   template <int dim>
   double BondForces<dim>::energy_of(const std::vector<unsigned int> &of_nodes,
-                                    const Vector                    &at,
-                                    const bool                       dissipated) const
+                                    const Vector                    &u,
+                                    const bool                       accepted) const
   {
-    at.update_ghost_values();
-    const double *const u = at.begin();
-    ends.find(u);
-    // Of the bonds of a node: W x e, W x^2, and their histories, as if they were one.
-    BondValues          all{0., 1.};
+    u.update_ghost_values();
+    ends.find(u.begin());
     std::vector<double> histories(law.n_history());
-    const auto          of_law = [&](const BondValues &bond, const double *before) {
-      return law->energy(bond, before, dissipated);
-    };
-    double sum = 0.;
+    double              sum = 0.;
     for (const unsigned int i : of_nodes)
       {
-        double of_node = 0.;
-        all.product    = 0.;
+        double     of_node = 0.;
+        BondValues all{0., 1.}; // of the bonds, as if they were one, and their histories
         std::fill(histories.begin(), histories.end(), 0.);
         bonds.for_each(i, [&](const Bond &bond) {
           if (bond.spring == 0.)
             return;
-          const double share   = ends.is_fictitious(bond.neighbor) ? 1. : 0.5;
-          const auto   of_bond = values(u, i, bond);
+          const double share = ends.is_fictitious(bond.neighbor) ? 1. : 0.5;
+          if (!law.any())
+            {
+              const double product = kinematics.extension_moment(u.begin(), i, bond);
+              all.product += product;
+              of_node += share * LinearPeridynamicSolid::bond_energy(bond.spring, product);
+              return;
+            }
+          const BondValues of_bond = values(u.begin(), i, bond);
+          double *const    before  = history(bond);
           all.product += of_bond.product;
           for (unsigned int k = 0; k < histories.size(); ++k)
-            histories[k] += history(bond)[k];
-          of_node += share * (law.any() ?
-                                bond.spring * of_law(of_bond, history(bond)) :
-                                LinearPeridynamicSolid::bond_energy(bond.spring, of_bond.product));
+            histories[k] += before[k];
+          of_node += share * bond.spring * law->energy(of_bond, before, accepted);
+          if (accepted)
+            law->accept(of_bond, before);
         });
-        if (laws.volumetric && !dissipated)
+        if (laws.volumetric && !accepted)
           of_node += LinearPeridynamicSolid::node_energy(laws.tension(i, all.product), all.product);
         if (laws.volumetric && law.any() && law->relaxes_dilatation())
           of_node +=
-            laws.shear_tension(i, 1.) *
-            (of_law(all, histories.data()) - (dissipated ? 0. : 0.5 * all.product * all.product));
+            laws.shear_tension(i, 1.) * (law->energy(all, histories.data(), accepted) -
+                                         (accepted ? 0. : 0.5 * all.product * all.product));
         sum += of_node;
       }
-    at.set_ghost_state(false);
+    u.set_ghost_state(false);
     return Utilities::MPI::sum(sum, families.nodes().communicator());
-  }
-
-
-  template <int dim>
-  void BondForces<dim>::accept(const double *u)
-  {
-    ends.find(u);
-    for (unsigned int i = 0; law.n_history() > 0 && i < families.nodes().n_owned(); ++i)
-      bonds.for_each(i, [&](const Bond &bond) {
-        BondRows<dim> &rows = (bond.number & BondTable<dim>::of_beyond) != 0 ? bonds.beyond :
-                                                                               bonds.body;
-        if (bond.spring != 0.)
-          law->accept(values(u, i, bond),
-                      rows.nonlinear.history.data() + law.n_history() * bonds.place(bond.number));
-      });
   }
 
 

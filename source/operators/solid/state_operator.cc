@@ -384,9 +384,6 @@ namespace PeriDeal
       return;
     solid.law.set_time(t);
     this->released_beside.by_law += solid.forces.energy_of(solid.rows.body.nodes, u, true);
-    u.update_ghost_values();
-    solid.forces.accept(u.begin());
-    u.set_ghost_state(false);
     solid.law.accept(t);
   }
 

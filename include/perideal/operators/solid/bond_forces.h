@@ -75,15 +75,13 @@ namespace PeriDeal
     double energy_of_extensions(const double *u) const;
 
     /**
-     * What these owned nodes have of all that bonds and dilatations store, or (@p dissipated) of
-     * what the law dissipates in the step. Collective.
+     * What these owned nodes have of all that bonds and dilatations store; or if the state is
+     * @p accepted, what the law has dissipated in the step, whose histories then are those of u.
+     * Collective.
      */
     double energy_of(const std::vector<unsigned int> &nodes,
                      const Vector                    &u,
-                     const bool                       dissipated = false) const;
-
-    /** The state u is accepted: bonds have the histories up to there. */
-    void accept(const double *u);
+                     const bool                       accepted = false) const;
 
     /**
      * With full kinematics of the linear solid: find_forces() is to look for bonds with e/x above a
@@ -122,15 +120,18 @@ namespace PeriDeal
   private:
     BondValues values(const double *u, const unsigned int i, const Bond &bond) const
     {
+      if (law->is_linear())
+        return {kinematics.extension_moment(u, i, bond), 0.}; // what it is of matters not
       BondValues result = kinematics.values(u, i, bond);
       if (!damage.empty())
         result.damage = 0.5 * (damage[i] + damage[ends.origin(bond.neighbor)]);
       return result;
     }
 
-    const double *history(const Bond &bond) const
+    double *history(const Bond &bond) const
     {
-      return bonds.rows_of(bond.number).nonlinear.history.data() +
+      const bool is_beyond = (bond.number & BondTable<dim>::of_beyond) != 0;
+      return (is_beyond ? bonds.beyond : bonds.body).nonlinear.history.data() +
              law.n_history() * bonds.place(bond.number);
     }
 
