@@ -44,6 +44,20 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  SymmetricTensor<2, 3> shear_stress(const SymmetricTensor<2, dim> &strain,
+                                     const BodyParameters<dim>     &body,
+                                     const Point<dim>              &p)
+  {
+    SymmetricTensor<2, 3> full;
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a; b < dim; ++b)
+        full[a][b] = strain[a][b];
+    return 2. * body.material.moduli(p).shear * deviator(full);
+  }
+
+
   PERIDEAL_INSTANTIATE_FUNCTION(full_stress);
   PERIDEAL_INSTANTIATE_FUNCTION(stress_of_strain);
+  PERIDEAL_INSTANTIATE_FUNCTION(shear_stress);
 } // namespace PeriDeal

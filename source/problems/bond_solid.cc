@@ -520,6 +520,19 @@ namespace PeriDeal
                                          change.size() > 0 ?
                                            change.local_element(i) :
                                            scene.elasticity.temperature_change.value(p)));
+            if constexpr (dim == 2)
+              if (scene.material.law.kind == SolidLaw::viscoelastic)
+                {
+                  // In plane strain; the bulk modulus does not relax.
+                  const double warmth = change.size() > 0 ?
+                                          change.local_element(i) :
+                                          scene.elasticity.temperature_change.value(p);
+                  stress.back()[2][2] =
+                    3. * scene.material.moduli(p).bulk *
+                      (trace(tensors.strain[i]) -
+                       3. * scene.material.thermal_expansion.value(p) * warmth) -
+                    stress.back()[0][0] - stress.back()[1][1];
+                }
           }
         return stress;
       }

@@ -301,12 +301,13 @@ namespace PeriDeal
 
       std::vector<BondBreak> breaks() const override
       {
-        return elements->brittle() ? elements->breaking_zone()->breaks() : std::vector<BondBreak>();
+        return elements->brittle() ? elements->beside().breaking->breaks() :
+                                     std::vector<BondBreak>();
       }
 
       std::vector<double> damage() const override
       {
-        return elements->brittle() ? elements->breaking_zone()->damage() : std::vector<double>();
+        return elements->brittle() ? elements->beside().breaking->damage() : std::vector<double>();
       }
 
       Point<dim> position(const unsigned int node) const override
@@ -323,11 +324,15 @@ namespace PeriDeal
                                     const std::vector<std::vector<double>> &points) const override
       {
         std::array<std::vector<double>, dim>         u;
-        std::array<std::vector<Tensor<1, dim>>, dim> slopes;
+        std::array<std::vector<Tensor<1, dim>>, dim> slopes, relaxed;
+        Vector                                       change_by_law = find_relaxation();
+        change_by_law.set_ghost_state(false);
         for (unsigned int d = 0; d < dim; ++d)
           {
             u[d]      = reader.evaluate(solution, dim, d);
             slopes[d] = reader.gradients(solution, dim, d);
+            if (change_by_law.size() > 0)
+              relaxed[d] = reader.gradients(change_by_law, dim, d);
           }
         std::vector<double> changes; // of the temperature
         if (const Vector change(elements->temperature_change()); change.size() > 0)
@@ -348,18 +353,21 @@ namespace PeriDeal
                             std::numeric_limits<double>::quiet_NaN());
                 continue;
               }
-            Tensor<2, dim> gradient;
+            Tensor<2, dim> gradient, by_law;
             double         values[dim];
             for (unsigned int d = 0; d < dim; ++d)
               {
                 values[d]   = u[d][k];
                 gradient[d] = slopes[d][k];
+                if (!relaxed[d].empty())
+                  by_law[d] = relaxed[d][k];
               }
-            append_row(
-              values,
-              stress_of_strain(symmetrize(gradient), scene, reader.inner_points()[k], changes[k]),
-              dim,
-              rows);
+            const Point<dim>     &p = reader.inner_points()[k];
+            SymmetricTensor<2, 3> stress =
+              stress_of_strain(symmetrize(gradient), scene, p, changes[k]);
+            if (change_by_law.size() > 0)
+              stress += shear_stress(symmetrize(by_law), scene, p);
+            append_row(values, stress, dim, rows);
             if (scene.elasticity.computes_temperature)
               rows.push_back(changes[k] + scene.elasticity.reference_temperature);
             for (const std::vector<double> &component : velocities)
@@ -502,12 +510,17 @@ namespace PeriDeal
 
       std::vector<std::string> notes() const override
       {
+        std::vector<std::string> list;
+        if (scene.material.law.kind == SolidLaw::formula)
+          list.push_back(
+            "stress in the results of 'coupled' is that of the linear law of its cells, in the zone, too, where bonds bear what 'Bond force' (section 'Material') says.");
         if (!this->certificate || this->certificate->fault().empty())
-          return {};
-        return {
+          return list;
+        list.push_back(
           "'Scheme = " + scene.coupling.scheme_text() +
           "' in section 'Coupling': " + this->certificate->fault() +
-          ". A zone that stays more than two horizons clear of the sides, and a wider 'Overlap', make it less; 'exchange' has none of it."};
+          ". A zone that stays more than two horizons clear of the sides, and a wider 'Overlap', make it less; 'exchange' has none of it.");
+        return list;
       }
 
     private:
@@ -535,6 +548,18 @@ namespace PeriDeal
         return model == ModelKind::finite_elements ? scene.finite_elements.degree : 1;
       }
 
+      static Tensor<2, dim> gradient_of(const Vector                               &u,
+                                        const FEValues<dim>                        &values,
+                                        const unsigned int                          q,
+                                        const std::vector<types::global_dof_index> &indices)
+      {
+        Tensor<2, dim> gradient;
+        for (unsigned int i = 0; i < indices.size(); ++i)
+          for (unsigned int d = 0; d < dim; ++d)
+            gradient[d] += u(dim * indices[i] + d) * values.shape_grad(i, q);
+        return gradient;
+      }
+
       /**
        * Call visit(values, point, indices of the nodes, gradient of the displacement) at the points
        * of all own cells.
@@ -547,6 +572,7 @@ namespace PeriDeal
                              update_values | update_gradients | update_quadrature_points |
                                update_JxW_values);
         std::vector<types::global_dof_index> indices(handler.get_fe().n_dofs_per_cell());
+        relaxation = find_relaxation();
         solution.update_ghost_values();
         for (const auto &cell : handler.active_cell_iterators())
           if (cell->is_locally_owned())
@@ -554,13 +580,7 @@ namespace PeriDeal
               values.reinit(cell);
               cell->get_dof_indices(indices);
               for (const unsigned int q : values.quadrature_point_indices())
-                {
-                  Tensor<2, dim> gradient;
-                  for (unsigned int i = 0; i < indices.size(); ++i)
-                    for (unsigned int d = 0; d < dim; ++d)
-                      gradient[d] += solution(dim * indices[i] + d) * values.shape_grad(i, q);
-                  visit(values, q, indices, gradient);
-                }
+                visit(values, q, indices, gradient_of(solution, values, q, indices));
             }
         solution.set_ghost_state(false);
       }
@@ -577,6 +597,21 @@ namespace PeriDeal
         return value;
       }
 
+      /** What a law that relaxes makes of the displacements, less these; empty: none does. */
+      Vector find_relaxation() const
+      {
+        Vector          change;
+        const NodalLaw *law = elements->beside().law;
+        if (law == nullptr || !law->relaxes())
+          return change;
+        change.reinit(solution);
+        const bool is_known = solution.has_ghost_elements();
+        solution.update_ghost_values();
+        law->find_change(change, solution);
+        solution.set_ghost_state(is_known);
+        return change;
+      }
+
       /** The stress in a cell, with the material at p and the temperature at the point q. */
       SymmetricTensor<2, 3> stress_at(const FEValues<dim>                        &values,
                                       const unsigned int                          q,
@@ -587,7 +622,10 @@ namespace PeriDeal
         const Vector &at_nodes = elements->temperature_change();
         const double  change = at_nodes.size() == 0 ? scene.elasticity.temperature_change.value(p) :
                                                       value_at(values, q, indices, at_nodes);
-        return stress_of_strain(symmetrize(gradient), scene, p, change);
+        SymmetricTensor<2, 3> stress = stress_of_strain(symmetrize(gradient), scene, p, change);
+        if (relaxation.size() > 0)
+          stress += shear_stress(symmetrize(gradient_of(relaxation, values, q, indices)), scene, p);
+        return stress;
       }
 
       /**
@@ -640,6 +678,7 @@ namespace PeriDeal
 
       const ModelKind                       model;
       std::unique_ptr<ElasticElements<dim>> elements;
+      mutable Vector                        relaxation; // while cells are visited
     };
   } // namespace
 

@@ -9,8 +9,8 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/problems/guards.h>
-#include <perideal/scene/lists.h>
 #include <perideal/scene/expression.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <cmath>

@@ -7,9 +7,9 @@
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/problems/solid_problem.h>
+#include <perideal/scene/elasticity_control.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/elasticity_control.h>
 #include <perideal/solvers/floating_part.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>

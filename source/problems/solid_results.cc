@@ -607,8 +607,9 @@ namespace PeriDeal
     nlohmann::ordered_json intensities(const SolidField<dim> &body, const double t, const Row &row)
     {
       nlohmann::ordered_json ends = nlohmann::ordered_json::object();
-      // Where bonds have broken cracks end elsewhere.
-      const bool grown = body.op().n_broken_bonds() > 0;
+      // Where bonds have broken cracks end elsewhere, and J is that of the linear law.
+      const bool grown = body.op().n_broken_bonds() > 0 ||
+                         body.scene.material.law.kind != SolidLaw::linear;
       for (const StressIntensity &end :
            grown ? std::vector<StressIntensity>() : body.stress_intensities(t))
         {

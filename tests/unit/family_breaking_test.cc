@@ -81,7 +81,7 @@ namespace
     expect_same("diagonal");
     EXPECT_NEAR(coupled.op().energy(x) / alone.op().energy(x_alone), 1., 1e-12);
     EXPECT_NEAR(coupled.op().released_energy() / alone.op().released_energy(), 1., 1e-11);
-    const std::vector<double> a = coupled.elements->breaking_zone()->damage(),
+    const std::vector<double> a = coupled.elements->beside().breaking->damage(),
                               b = alone.states->breaking().damage();
     ASSERT_EQ(a.size(), b.size());
     for (unsigned int i = 0; i < a.size(); ++i)

@@ -29,4 +29,10 @@ namespace PeriDeal
                                                  const BodyParameters<dim>             &body,
                                                  const dealii::Point<dim>              &p,
                                                  const double temperature_change);
+
+  /** 2 G times the three-dimensional deviator of a strain, in 2D of plane strain. */
+  template <int dim>
+  dealii::SymmetricTensor<2, 3> shear_stress(const dealii::SymmetricTensor<2, dim> &strain,
+                                             const BodyParameters<dim>             &body,
+                                             const dealii::Point<dim>              &p);
 } // namespace PeriDeal

@@ -107,10 +107,17 @@ namespace PeriDeal
                         std::pair<unsigned long long, std::string>();
     }
 
-    /** Null: no bonds may break, and none has another law than the linear one. Not collective. */
-    const ZoneBreaking<dim> *breaking_zone() const
+    /** Null: no bonds may break; none has another law than the linear one. */
+    struct Beside
     {
-      return breaking.get();
+      const ZoneBreaking<dim> *breaking;
+      const NodalLaw          *law;
+    };
+
+    /** Not collective. */
+    Beside beside() const
+    {
+      return {breaking.get(), law ? &law->nodal : nullptr};
     }
 
     ForceBalance forces(const Vector &u, const double t) const override;
