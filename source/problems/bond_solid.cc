@@ -476,6 +476,10 @@ namespace PeriDeal
               note_on_critical_stretch()})
           if (!note.empty())
             list.push_back(note);
+        if (dim == 2 && scene.material.law.kind == SolidLaw::formula &&
+            scene.elasticity.plane == PlaneState::strain)
+          list.push_back(
+            "the stress out of the plane is that of the linear law; 'Bond force' in section 'Material' says nothing of it.");
         return list;
       }
 
@@ -483,7 +487,8 @@ namespace PeriDeal
       std::string note_on_critical_stretch() const
       {
         if (!states->brittle() || scene.material.fracture_energy || scene.material.scatter ||
-            !scene.domain.has_lattice() || states->bonds().families.nodes().n_owned() == 0)
+            scene.material.law.kind == SolidLaw::formula || !scene.domain.has_lattice() ||
+            states->bonds().families.nodes().n_owned() == 0)
           return {};
         const auto [energy, of_ball] = states->breaking().energies_of_first();
         return note_on_stretch(scene, energy, of_ball);

@@ -534,7 +534,7 @@ namespace PeriDeal
     template <int dim>
     void note_inversion(const SolidProblem<dim> &run, const RunContext &context)
     {
-      if (run.op().nonlinear()) // such runs have ended
+      if (run.scene.elasticity.has_full_kinematics()) // such runs have ended
         return;
       const Inversion found = run.op().inverted(run.displacement);
       if (found.n_nodes > 0)
@@ -556,7 +556,7 @@ namespace PeriDeal
       constexpr double   much = 0.1, little = 0.01; // of a radian, of the body
       const auto        &dofs = run.dofs();
       const unsigned int n    = dofs.get_fe().n_dofs_per_cell();
-      if (dim == 1 || !run.stepper || run.op().nonlinear() ||
+      if (dim == 1 || !run.stepper || run.scene.elasticity.has_full_kinematics() ||
           dofs.get_fe().n_dofs_per_vertex() == 0)
         return;
       FEValues<dim> values(dofs.get_fe(), QMidpoint<dim>(), update_gradients | update_JxW_values);

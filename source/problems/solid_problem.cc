@@ -609,7 +609,8 @@ namespace PeriDeal
     const Extent now = extent_of(displacement);
     if (!now.finite)
       return Problem<dim>::watch(t);
-    if (!stepper || op().nonlinear() || !op().brittle() || op().n_broken_bonds() == 0)
+    if (!stepper || scene.elasticity.has_full_kinematics() || !op().brittle() ||
+        op().n_broken_bonds() == 0)
       return {};
     return now.size() > body_size() ?
              flown_off(op(), displacement, dim, body_size(), place_of_nodes(this->dofs()), t) :

@@ -28,7 +28,8 @@ namespace PeriDeal
     double     x = 0., y = 0., z = 0., t = 0., T = 0.;
     bool       uses_time = false, uses_position = false, uses_temperature = false;
 
-    std::vector<double> marks; // marked_temperatures()
+    std::vector<double>      marks; // marked_temperatures()
+    std::vector<std::string> names; // of variables that are no place; else empty
 
     std::function<double(const dealii::Point<3> &, const double)> function; // else the parser
 
@@ -326,7 +327,7 @@ namespace PeriDeal
     define_names(parser);
     std::vector<std::string> names{"x", "y", "z", "t"};
     if (!is_of_places(variables))
-      names = split_list(variables, ',');
+      compiled->names = names = split_list(variables, ',');
     double *const places[] = {&compiled->x, &compiled->y, &compiled->z, &compiled->t};
     for (unsigned int k = 0; k < names.size(); ++k)
       parser.DefineVar(names[k], places[k]);
@@ -390,10 +391,14 @@ namespace PeriDeal
                               const double              t,
                               const double              temperature) const
   {
+    std::string values;
+    for (unsigned int d = 0; d < std::min<std::size_t>(dim, compiled->names.size()); ++d)
+      values += (d > 0 ? ", " : "") + compiled->names[d] + " = " + number_text(p[d]);
     // Properties of a temperature are asked for without a time.
-    const bool hides_time = compiled->uses_temperature && !compiled->uses_time;
+    const bool hides_time = !values.empty() || (compiled->uses_temperature && !compiled->uses_time);
     report_formula_error((where.empty() ? "The" : "Entry " + where + ": the") + " value of '" +
-                         formula + "' is not finite at " + point_text(p) +
+                         formula + "' is not finite at " +
+                         (values.empty() ? point_text(p) : values) +
                          (hides_time ? "" : ", t = " + number_text(t)) +
                          (compiled->uses_temperature ? ", T = " + number_text(temperature) : "") +
                          ". Change the formula so that it is a number everywhere.");

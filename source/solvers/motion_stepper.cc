@@ -349,8 +349,8 @@ namespace PeriDeal
       account.add_jump(unbalanced,
                        next,
                        account.kept_back(unbalanced) + energy(u, v).drift - drift);
+    op.accept(u, next); // what breaks has dissipated, too
     change_bonds(u, next);
-    op.accept(u, next);
     span.now = next;
     ++span.n_done;
     tell_step(next);

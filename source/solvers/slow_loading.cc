@@ -317,6 +317,7 @@ namespace PeriDeal
     size = start_statics(op, u, t, options);
     last = u;
     solve(u, t);
+    accept(op, u, t, so_far);
     so_far.start = op.energy(u);
     op.unbalanced(unbalanced, u, t);
     work_of_forces.begin(unbalanced, t);
@@ -389,6 +390,7 @@ namespace PeriDeal
     solve(u, t, may_be_left);
     const auto [end, most] = shorten(u);
     op.unbalanced(unbalanced, u, end);
+    accept(op, u, end, so_far); // what breaks then does so at once
     before.change = u;
     before.change -= last;
     so_far.work += work_of_forces.step(last, u, unbalanced, end);
@@ -425,6 +427,7 @@ namespace PeriDeal
     so_far.work += work_of_forces.step(last, u, unbalanced, now);
     breaking = {now, 0., false, false, now, breaking.most};
     change_bonds(u, now, {});
+    accept(op, u, now, so_far);
   }
 
 

@@ -205,6 +205,8 @@ Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Time/Steady=true => 'St
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Models=coupled & Coupling/Zone=everywhere => 'Scheme' | 'exchange' | 'blending'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Models=finite elements & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'Temperature change' | 'Models = peridynamics'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Peridynamics/Operator form=lattice => 'Operator form' | 'Law' | 'auto'
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'Temperature change' | plane strain
+Material/Law=formula & Material/Bond force=s & Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=splice & Elasticity/Solver=conjugate gradients => 'Scheme' | 'splice' | 'Law = linear'
 Material/Law=formula => 'Bond force' | is empty
 Material/Law=formula & Material/Bond force=s+ => 'Bond force' | column 2
 Material/Law=formula & Material/Bond force=2*x => 'Bond force' | 'x' | s, damage

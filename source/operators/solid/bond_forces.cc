@@ -97,6 +97,8 @@ namespace PeriDeal
           {
             double sum = 0., effective = 0.;
             bonds.for_each(i, [&](const Bond &bond) {
+              if (bond.spring == 0.) // what it went through is still there
+                return;
               sum += kinematics.extension_moment(u, i, bond);
               if (law->relaxes_dilatation())
                 effective += effective_moment(u, i, bond);
@@ -338,14 +340,16 @@ namespace PeriDeal
   template <int dim>
   double BondForces<dim>::largest_stretch(const double *u) const
   {
-    double largest = 0.;
-    if (kinematics.is_full())
-      largest = largest_of_stretches<dim>(rows_at(u, nullptr));
-    else
-      for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-        bonds.for_each_in_body(i, [&](const Bond &bond) {
-          largest = std::max(largest, std::abs(values(u, i, bond).stretch()));
-        });
+    double largest = kinematics.is_full() ? largest_of_stretches<dim>(rows_at(u, nullptr)) : 0.;
+    if (law.any() && !law->is_linear())
+      {
+        ends.find(u);
+        for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
+          bonds.for_each(i, [&](const Bond &bond) {
+            if (bond.spring != 0.)
+              largest = std::max(largest, law->slope(values(u, i, bond), history(bond)) - 1.);
+          });
+      }
     return Utilities::MPI::max(largest, families.nodes().communicator());
   }
 

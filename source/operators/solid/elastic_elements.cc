@@ -472,9 +472,10 @@ namespace PeriDeal
       mend_diagonal();
     if (law)
       tell_damage(*breaking, Vector(nodes), law->nodal);
+    const double by_contact = contact->change(rows, u);
     if (law) // forces and energies that were added are those of the linear one
       return before - energy(u);
-    return contact->change(rows, u) - Utilities::MPI::sum(gained, nodes->get_mpi_communicator());
+    return by_contact - Utilities::MPI::sum(gained, nodes->get_mpi_communicator());
   }
 
 
@@ -523,7 +524,7 @@ namespace PeriDeal
     if (changes.any)
       changes.forces = 0.;
     changes.any = false;
-    if (!zone_follows_stretches())
+    if (!breaking || !body.coupling.follows_stretches())
       return false;
     const WithGhosts ghosts(u);
     return join_stretched(u);
@@ -566,6 +567,7 @@ namespace PeriDeal
   {
     if (law)
       {
+        const Archive::Part part(archive, "law");
         archive.exchange("dissipated", this->released_beside.by_law);
         law->nodal.exchange(archive, keys);
       }
@@ -686,6 +688,16 @@ namespace PeriDeal
 
 
   template <int dim>
+  double ElasticElements<dim>::largest_stretch(const Vector &u) const
+  {
+    if (!nonlinear() || !breaking)
+      return 0.;
+    const WithGhosts ghosts(u);
+    return Utilities::MPI::max(breaking->bonds.linearize(u) - 1., nodes->get_mpi_communicator());
+  }
+
+
+  template <int dim>
   void ElasticElements<dim>::accept(const Vector &u, const double t)
   {
     if (!law)
@@ -729,6 +741,8 @@ namespace PeriDeal
   template <int dim>
   Inversion ElasticElements<dim>::inverted(const Vector &u) const
   {
+    if (nonlinear()) // small displacements all the same, of any size
+      return {};
     const WithGhosts ghosts(u);
     return find_inverted<dim>(
       cell_corners_of<dim>(cells.dof_handler(), *nodes),

@@ -88,12 +88,21 @@ namespace PeriDeal
       kind == SolidLaw::formula && by_elements && !coupled,
       "Law",
       "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
-    material.refuse(by_elements && (body.elasticity.computes_temperature ||
-                                    !is_zero(body.elasticity.temperature_change)),
+    const bool is_warm = body.elasticity.computes_temperature ||
+                         !is_zero(body.elasticity.temperature_change);
+    material.refuse(by_elements && is_warm,
                     "Law",
                     "found '" + material.text("Law") +
                       "', which knows no 'Temperature change' (section 'Elasticity')" +
                       with_elements);
+    material.refuse(
+      kind == SolidLaw::viscoelastic && dim == 2 && is_warm,
+      "Law",
+      "'viscoelastic' knows no 'Temperature change' (section 'Elasticity') in plane strain, where what the temperature strains the body by out of the plane would relax, too; use 'Dimension = 3'.");
+    body.coupling.refuse(
+      kind == SolidLaw::formula && coupled && body.coupling.splices(),
+      "Scheme",
+      "'splice' is for 'Law = linear' (section 'Material'); use 'exchange' or 'blending'.");
     material.refuse(
       kind == SolidLaw::viscoelastic && (dim == 1 || body.elasticity.is_bond_based()),
       "Law",

@@ -76,7 +76,6 @@ namespace PeriDeal
 
   void NodalLaw::exchange(Archive &archive, const NodeKeys &keys)
   {
-    const Archive::Part part(archive, "law");
     steps.exchange(archive);
     for (unsigned int k = 0; k < histories.size(); ++k)
       {

@@ -117,8 +117,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ZoneBonds<dim>::linearize(const Vector &u)
+  double ZoneBonds<dim>::linearize(const Vector &u)
   {
+    double largest = 1.;
     coefficients.slopes.assign(bonds.size(), 1.);
     for (const unsigned int i : with_rows)
       for (std::size_t k = rows[i].first; k < rows[i].first + rows[i].n; ++k)
@@ -128,7 +129,10 @@ namespace PeriDeal
           coefficients.slopes[k] =
             law->steps->slope(law->values(i, j, xi, change(i, bonds[k], u.begin(), nullptr)),
                               law->history(i, j, xi));
+          if (bonds[k].strength != 0.)
+            largest = std::max(largest, coefficients.slopes[k]);
         }
+    return largest;
   }
 
 
@@ -295,7 +299,10 @@ namespace PeriDeal
       {
         Tensor<1, dim> own;
         for_each(i, [&](const Bond &bond, const Tensor<1, dim> &xi) {
-          const double of_both = bond.strength * (2. * spring(i, bond) * size(xi) +
+          const std::size_t k = &bond - bonds.data();
+          const double      stiffer =
+            k < coefficients.slopes.size() ? std::max(1., std::abs(coefficients.slopes[k])) : 1.;
+          const double of_both = bond.strength * (2. * stiffer * spring(i, bond) * size(xi) +
                                                   of_tensions.local_element(bond.neighbor));
           for (unsigned int d = 0; d < dim; ++d)
             sums[dim * i + d] += of_both * std::abs(xi[d]);

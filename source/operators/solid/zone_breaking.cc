@@ -543,6 +543,19 @@ namespace PeriDeal
       "'follow' is for bonds that may break: give section 'Material' a 'Fracture energy' or a 'Critical stretch', or use 'cracks: 1'.");
     if (!lists_bonds(body))
       return;
+    if (!breaks)
+      {
+        material.refuse(
+          !body.domain.has_lattice() || body.cracks.on_faces(),
+          "Law",
+          "'" + material.text("Law") +
+            "' with 'Models = coupled' is for lattices of equal cells, and cracks that are not on faces of the mesh; use 'Models = peridynamics'.");
+        body.peridynamics.refuse(
+          body.peridynamics.completes_families() && !coupling.exchanges(),
+          "Surface correction",
+          "'fictitious nodes' is not for 'Scheme = blending' with a 'Law' (section 'Material') that is not linear; use 'none', or 'Models = peridynamics'.");
+        return;
+      }
     coupling.refuse(
       coupling.splices(),
       "Scheme",

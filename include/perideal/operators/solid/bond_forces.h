@@ -109,7 +109,10 @@ namespace PeriDeal
     /** Adds to y what stiffness across bonds does. Collective. */
     void add_geometric_forces(Vector &y, const double *x) const;
 
-    /** Of |e|/x over unbroken bonds in the body, with full kinematics |Y|/x - 1. Collective. */
+    /**
+     * What makes K another one: with full kinematics |Y|/x - 1 over unbroken bonds in the body, and
+     * how far slopes of a law that is not linear are above 1. Collective.
+     */
     double largest_stretch(const double *u) const;
 
     std::size_t memory_consumption() const;

@@ -68,7 +68,7 @@ namespace PeriDeal
     bool zone_follows_cracks() const override
     {
       return zone_bonds && zone_bonds->coupling().zone_follows_cracks() &&
-             (this->has_growing_cracks() || zone_follows_stretches());
+             (this->has_growing_cracks() || (breaking && body.coupling.follows_stretches()));
     }
 
     const BreakHistory *break_history() const override
@@ -81,8 +81,9 @@ namespace PeriDeal
       return law && !law->nodal.steps->is_linear();
     }
 
-    void linearize(const Vector &u) override;
-    void accept(const Vector &u, const double t) override;
+    void   linearize(const Vector &u) override;
+    double largest_stretch(const Vector &u) const override;
+    void   accept(const Vector &u, const double t) override;
 
     std::vector<NodePair> broken_since(std::size_t &n_known) const override
     {
@@ -261,12 +262,6 @@ namespace PeriDeal
                      const std::function<void()>     &make_change);
     /** Let nodes join the zone where u, whose ghosts are up to date, stretches the body. */
     bool join_stretched(const Vector &u);
-
-    /** Nodes join the zone where the body is stretched (`Zone = follow`). */
-    bool zone_follows_stretches() const
-    {
-      return breaking && body.coupling.follows_stretches();
-    }
 
     std::unique_ptr<SolidBondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     std::unique_ptr<ZoneBreaking<dim>>             breaking;   // null: no bonds may break

@@ -119,8 +119,8 @@ namespace PeriDeal
     virtual void accept(const Vector & /*u*/, const double /*t*/) {}
 
     /**
-     * The largest |Y|/x - 1, either sign, of unbroken bonds Y that were x long; 0 where nonlinear()
-     * is not. Collective.
+     * How far K may be from that at rest: the largest |Y|/x - 1, either sign, of bonds Y that were
+     * x long, or excess of a slope over 1; 0 where nonlinear() is not. Collective.
      */
     virtual double largest_stretch(const Vector & /*u*/) const
     {

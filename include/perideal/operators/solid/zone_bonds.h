@@ -79,8 +79,11 @@ namespace PeriDeal
       add_forces_of(with_rows, 1., y, u.begin(), nullptr, of_tangent);
     }
 
-    /** With a law that is not linear. Ghosts as above. */
-    void linearize(const Vector &u);
+    /**
+     * With a law that is not linear: K is the tangent at u, ghosts as above. Returns the largest
+     * slope, at least 1.
+     */
+    double linearize(const Vector &u);
 
     /** Add a multiple of K u in the rows of some nodes; ghosts as above. Collective. */
     void add_forces_of(const std::vector<unsigned int> &of_nodes,
