@@ -112,6 +112,19 @@ class ReportCase(unittest.TestCase):
         self.addCleanup(self.holder.cleanup)
         self.directory = Path(self.holder.name) / "output"
 
+    def change_summary(self, change):
+        """Rewrites summary.json."""
+        path = self.directory / "summary.json"
+        summary = json.loads(path.read_text())
+        change(summary)
+        path.write_text(json.dumps(summary))
+
+    def change_fields(self, change):
+        """change(name of the file, file) of all files of fields."""
+        for path in (self.directory / "fields").iterdir():
+            with h5py.File(path, "a") as file:
+                change(path.name, file)
+
     def page(self, case, *options, drawn=True):
         """The checked page of a case; its figures are put together, but not drawn where another test does that."""
         if not self.directory.exists():
@@ -218,11 +231,13 @@ class Pages(ReportCase):
 
     def test_no_picture_of_zeros(self):
         make_plate(self.directory, 8)
-        for path in (self.directory / "fields").iterdir():
-            with h5py.File(path, "a") as file:
-                file["heat_flux"][...] = 0
-                if "peridynamics_minus_finite_elements" in file:
-                    file["peridynamics_minus_finite_elements"][...] = 0
+
+        def nothing(_, file):
+            for name in ("heat_flux", "peridynamics_minus_finite_elements"):
+                if name in file:
+                    file[name][...] = 0
+
+        self.change_fields(nothing)
         (self.directory / "totals.csv").write_text(
             "time,model,quantity,value\n" + "".join(
                 f"{t},{m},{q},{v}\n" for t in (0.1, 0.2, 0.3) for m in (FEM, PD)
@@ -251,32 +266,26 @@ class Pages(ReportCase):
         make_plate(self.directory, 8)
         for name in ("line.csv", "probes.csv", "totals.csv", "scene.prm"):
             (self.directory / name).unlink()
-        summary = json.loads((self.directory / "summary.json").read_text())
-        summary["fields"] = []
-        del summary["comparison"], summary["notes"], summary["sides"]
-        (self.directory / "summary.json").write_text(json.dumps(summary))
+        self.change_summary(lambda summary: (summary.update(fields=[]), *map(summary.pop, ("comparison", "notes", "sides"))))
         page = self.page("")
         self.assertEqual(len(page.images), 1)
 
     def test_constant_and_broken_values(self):
         for value in (20.0, float("nan"), float("inf")):
+            def fill(_, file):
+                for name in ("temperature", "heat_flux"):
+                    file[name][...] = value
+                file.pop("peridynamics_minus_finite_elements", None)
+
             make_plate(self.directory, 8)
-            for path in (self.directory / "fields").iterdir():
-                with h5py.File(path, "a") as file:
-                    for name in ("temperature", "heat_flux"):
-                        file[name][...] = value
-                    if "peridynamics_minus_finite_elements" in file:
-                        del file["peridynamics_minus_finite_elements"]
+            self.change_fields(fill)
             text = "".join(self.page("").text)
             self.assertEqual("temperatures are not finite" in text, not np.isfinite(value))
 
     def test_numbers_may_be_null(self):
         make_plate(self.directory, 8)
-        summary = json.loads((self.directory / "summary.json").read_text())
-        for model in summary["models"].values():
-            model["stable step"] = {"sharp": None, "safe": None}
-            model["heat balance"] = None
-        (self.directory / "summary.json").write_text(json.dumps(summary))
+        nothing = {"stable step": {"sharp": None, "safe": None}, "heat balance": None}
+        self.change_summary(lambda summary: [model.update(nothing) for model in summary["models"].values()])
         self.page("", drawn=False)
 
 
@@ -290,13 +299,6 @@ class OtherPhysics(ReportCase):
         html = (self.directory / "report.html").read_text(encoding="utf-8")
         return self.OF_HEAT.findall(re.sub(r"base64,[^\"]*|<style>.*</style>", "", html,
                                            flags=re.DOTALL))
-
-    def change_summary(self, change):
-        """Rewrites summary.json."""
-        path = self.directory / "summary.json"
-        summary = json.loads(path.read_text())
-        change(summary)
-        path.write_text(json.dumps(summary))
 
     def test_heat_may_say_so(self):
         make_plate(self.directory, 8)
@@ -348,11 +350,7 @@ class OtherPhysics(ReportCase):
 
     def test_what_moisture_counts(self):
         make_plate(self.directory, 8, physics="moisture", saturated=(3.0, 3.0))
-        path = self.directory / "summary.json"
-        summary = json.loads(path.read_text())
-        summary["moisture counts"] = "wetness"
-        summary["units"]["mass"] = "g"
-        path.write_text(json.dumps(summary))
+        self.change_summary(lambda summary: (summary.update({"moisture counts": "wetness"}), summary["units"].update(mass="g")))
         (self.directory / "scene.prm").write_text("subsection Material\nset Conductivity = 0.02\nset Density = 1\n"
                                                   "set Heat capacity = 1\nset Saturated concentration = 12e-6\nend\n")
         page = self.page("", drawn=False)
@@ -405,11 +403,13 @@ class OtherPhysics(ReportCase):
         self.assertTrue(difference.is_multiple(run, [0, 1], "concentration"))  # absent
         make_strip(self.directory, saturated=(0.0, 3.0))
         self.assertFalse(difference.is_multiple(Run(self.directory), [0], "concentration"))
-        for path in (self.directory / "fields").iterdir():
-            with h5py.File(path, "a") as file:
-                file["concentration"][...] = 3 * file["wetness"][...]
-                if path.name.endswith("_0000.h5"):  # a dry body has no factor
-                    file["concentration"][...] = file["wetness"][...] = 0
+
+        def concentrate(name, file):
+            if name.endswith("_0000.h5"):  # a dry body has no factor
+                file["wetness"][...] = 0
+            file["concentration"][...] = 3 * file["wetness"][...]
+
+        self.change_fields(concentrate)
         self.assertTrue(difference.is_multiple(Run(self.directory), [0, 1], "concentration"))
         with h5py.File(self.directory / "fields/peridynamics_0001.h5", "a") as file:
             file["concentration"][...] *= 1.1  # another factor in one model
@@ -472,13 +472,13 @@ class OtherPhysics(ReportCase):
         self.assertEqual([a.get_ylabel() for a in figure.axes], ["Wetness", "PD − FEM"])
 
     def test_nothing_flows_and_values_break(self):
+        def breaks(_, file):
+            file["current_density"][...] = 0
+            file["potential"][...] = float("nan")
+            file.pop("peridynamics_minus_finite_elements", None)
+
         make_plate(self.directory, 8, physics="electricity")
-        for path in (self.directory / "fields").iterdir():
-            with h5py.File(path, "a") as file:
-                file["current_density"][...] = 0
-                file["potential"][...] = float("nan")
-                if "peridynamics_minus_finite_elements" in file:
-                    del file["peridynamics_minus_finite_elements"]
+        self.change_fields(breaks)
         text = "".join(self.page("").text)
         self.assertIn("The current density is zero everywhere.", text)
         self.assertIn("Warning: potentials are not finite for", text)
@@ -643,55 +643,32 @@ class Faults(ReportCase):
             self.assertIn(text, errors)
         self.assertFalse((self.directory / "report.html").exists())
 
-    def test_no_directory(self):
+    def test_summaries(self):
         self.check("is not a directory")
-
-    def test_no_summary(self):
         self.directory.mkdir()
         self.check("summary.json", "is missing")
+        for text, *words in (('{"title": ', "summary.json", "not valid JSON"),
+                             ('{"dimension": 2, "fields": []}', "no proper entry 'models'"),
+                             ('{"dimension": 2, "models": {"peridynamics": {}}, "fields": [{"time": 1}]}', "every entry of 'fields'")):
+            with self.subTest(text):
+                (self.directory / "summary.json").write_text(text)
+                self.check(*words)
 
-    def test_broken_summary(self):
-        self.directory.mkdir()
-        (self.directory / "summary.json").write_text('{"title": ')
-        self.check("summary.json", "not valid JSON")
+    def test_files(self):
+        def without_temperature(path):
+            with h5py.File(path, "a") as file:
+                del file["temperature"]
 
-    def test_summary_without_models(self):
-        self.directory.mkdir()
-        (self.directory / "summary.json").write_text('{"dimension": 2, "fields": []}')
-        self.check("no proper entry 'models'")
-
-    def test_summary_with_a_bad_fields_entry(self):
-        self.directory.mkdir()
-        (self.directory / "summary.json").write_text(
-            '{"dimension": 2, "models": {"peridynamics": {}}, "fields": [{"time": 1}]}')
-        self.check("every entry of 'fields'")
-
-    def test_missing_field_file(self):
-        make_plate(self.directory, 8)
-        (self.directory / "fields/peridynamics_0001.h5").unlink()
-        self.check("fields/peridynamics_0001.h5", "is missing")
-
-    def test_field_file_that_is_not_hdf5(self):
-        make_plate(self.directory, 8)
-        (self.directory / "fields/finite_elements_0002.h5").write_text("no")
-        self.check("finite_elements_0002.h5", "not a readable HDF5 file")
-
-    def test_missing_dataset(self):
-        make_plate(self.directory, 8)
-        with h5py.File(self.directory / "fields/finite_elements_0000.h5", "a") as file:
-            del file["temperature"]
-        self.check("finite_elements_0000.h5", "no dataset 'temperature'")
-
-    def test_broken_line_file(self):
-        make_plate(self.directory, 8)
-        (self.directory / "line.csv").write_text(
-            "time,model,x,y,value\n0.1,peridynamics,0,zero,1\n")
-        self.check("line.csv", "line 2", "zero")
-
-    def test_line_file_with_wrong_header(self):
-        make_plate(self.directory, 8)
-        (self.directory / "line.csv").write_text("t,x,value\n")
-        self.check("line.csv", "no column 'time'", "t,x,value")
+        for name, breaks, *words in (
+                ("fields/peridynamics_0001.h5", Path.unlink, "fields/peridynamics_0001.h5", "is missing"),
+                ("fields/finite_elements_0002.h5", lambda path: path.write_text("no"), "finite_elements_0002.h5", "not a readable HDF5 file"),
+                ("fields/finite_elements_0000.h5", without_temperature, "finite_elements_0000.h5", "no dataset 'temperature'"),
+                ("line.csv", lambda path: path.write_text("time,model,x,y,value\n0.1,peridynamics,0,zero,1\n"), "line.csv", "line 2", "zero"),
+                ("line.csv", lambda path: path.write_text("t,x,value\n"), "line.csv", "no column 'time'", "t,x,value")):
+            with self.subTest(words[0]):
+                make_plate(self.directory, 8)
+                breaks(self.directory / name)
+                self.check(*words)
 
 
 class Sampling(unittest.TestCase):
@@ -723,20 +700,13 @@ class Sampling(unittest.TestCase):
         self.assertEqual(np.count_nonzero(np.isnan(picture)), 100)
 
     def test_jump_at_a_crack_inside_cells_is_kept(self):
-        nodes, cells = box_mesh([-1, -1], [1, 1], [11, 11])
-        values = np.where((np.abs(nodes[:, 0]) < 2) & (nodes[:, 1] > 0), 5.0, -5.0)
-        crack = [np.array([[-1.0, 0], [1.0, 0]])]
-        picture = PixelMap(Mesh(nodes, cells), View([-1, -1], [1, 1], 110), crack).evaluate(values)
-        self.assertLess(np.abs(picture[:55] + 5).max(), 1e-12)
-        self.assertLess(np.abs(picture[55:] - 5).max(), 1e-12)
-
-    def test_nodes_on_a_crack_belong_to_its_left_side(self):
-        nodes, cells = box_mesh([-1, -1], [1, 1], [10, 10])
-        values = np.where(nodes[:, 1] > -1e-9, 5.0, -5.0)
-        crack = [np.array([[-1.0, 0], [1.0, 0]])]
-        picture = PixelMap(Mesh(nodes, cells), View([-1, -1], [1, 1], 100), crack).evaluate(values)
-        self.assertLess(np.abs(picture[:50] + 5).max(), 1e-12)
-        self.assertLess(np.abs(picture[50:] - 5).max(), 1e-12)
+        for n in (11, 10):  # nodes on a crack belong to its left side
+            nodes, cells = box_mesh([-1, -1], [1, 1], [n, n])
+            values = np.where(nodes[:, 1] > -1e-9, 5.0, -5.0)
+            crack = [np.array([[-1.0, 0], [1.0, 0]])]
+            picture = PixelMap(Mesh(nodes, cells), View([-1, -1], [1, 1], 10 * n), crack).evaluate(values)
+            self.assertLess(np.abs(picture[:5 * n] + 5).max(), 1e-12)
+            self.assertLess(np.abs(picture[5 * n:] - 5).max(), 1e-12)
 
     def test_jump_between_cells_cut_apart_is_kept(self):
         nodes, cells = box_mesh([-1, -1], [1, 1], [10, 10])

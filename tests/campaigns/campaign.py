@@ -16,6 +16,7 @@ import argparse
 import collections
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -71,40 +72,30 @@ class End:
         return REFUSED, last
 
 
-def session_members(session):
-    """The processes of a session that are alive: mpirun and what it started stay in it, whatever their groups."""
-    members = []
-    for name in os.listdir("/proc"):
-        if name.isdigit():
-            try:
-                with open(f"/proc/{name}/stat") as file:
-                    fields = file.read().rsplit(")", 1)[1].split()
-            except OSError:
-                continue
-            if int(fields[3]) == session and fields[0] != "Z":
-                members.append(int(name))
-    return members
+def limit_memory(size):
+    """Of this process, to so many bytes of addresses, and without a core file."""
+    resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def state_of(process):
-    """R (runs), S (sleeps), D (waits for a disk), ...; - for a process that is gone."""
+def stat_of(process):
+    """What the system says of a process, from its state on: R (runs), S (sleeps), D (waits for a disk), ...; nothing if it is gone."""
     try:
         with open(f"/proc/{process}/stat") as file:
-            return file.read().rsplit(")", 1)[1].split()[0]
+            return file.read().rsplit(")", 1)[1].split()
     except OSError:
-        return "-"
+        return []
+
+
+def session_members(session):
+    """The processes of a session that are alive: mpirun and what it started stay in it, whatever their groups."""
+    found = {int(name): stat_of(name) for name in os.listdir("/proc") if name.isdigit()}
+    return [process for process, fields in found.items() if fields and int(fields[3]) == session and fields[0] != "Z"]
 
 
 def processor_seconds(processes):
     """What these processes have computed so far."""
-    ticks = 0
-    for process in processes:
-        try:
-            with open(f"/proc/{process}/stat") as file:
-                ticks += sum(int(field) for field in file.read().rsplit(")", 1)[1].split()[11:13])
-        except OSError:
-            pass
-    return ticks / os.sysconf("SC_CLK_TCK")
+    return sum(int(field) for process in processes for field in stat_of(process)[11:13]) / os.sysconf("SC_CLK_TCK")
 
 
 def shared_memory(processes):
@@ -194,7 +185,7 @@ class Process:
     def _runnable(self):
         """Whether any of the processes computes, waits for a processor or for a disk; looked at for five seconds."""
         for _ in range(100):
-            if any(state_of(process) in "RD" for process in self.members()):
+            if any(stat_of(process)[:1] in (["R"], ["D"]) for process in self.members()):
                 return True
             time.sleep(0.05)
         return False

@@ -9,8 +9,8 @@ Each has to be read, or refused with exit status 1 and one message that names th
 import struct
 import zlib
 
-from campaign import Campaign, run
-from damaged_meshes import TIME, judge, limit_memory
+from campaign import Campaign
+from damaged_meshes import check_file
 
 MARK = b"\x89PNG\r\n\x1a\n"
 
@@ -160,9 +160,7 @@ def main():
     for case in campaign:
         damage = DAMAGES[case.number % len(DAMAGES)]
         case.write("damaged.png", damage(case.random))
-        scene = case.write("scene.prm", SCENE)
-        end = run(["check", scene], case, timeout=TIME, prepare=limit_memory)
-        judge(case, damage.__name__.replace("_", " "), end, "damaged.png'", "of the image")
+        check_file(case, damage, SCENE, "damaged.png'", "of the image")
     campaign.finish()
 
 

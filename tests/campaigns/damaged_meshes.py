@@ -7,9 +7,9 @@ Each has to be read, or refused with exit status 1 and one message that names th
 """
 
 import os
-import resource
 
-from campaign import COMPLETE, HANG, NO_MESSAGE, REFUSED, STOPPED, TOO_LONG, WRONG, WRONG_STATUS, Campaign, run
+from campaign import COMPLETE, HANG, NO_MESSAGE, REFUSED, STOPPED, TOO_LONG, WRONG, WRONG_STATUS
+from campaign import Campaign, limit_memory, run
 from scene_test import SOURCE_DIR
 
 TIME = 20  # seconds
@@ -139,13 +139,10 @@ def cut(text, random):
 DAMAGES = [change_bytes, change_lines, change_words, change_counts, change_cells, move_nodes, cut]
 
 
-def limit_memory():
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-
-def judge(case, what, end, *words):
-    """Count the end: refused with a message that says one of the words, or read."""
+def check_file(case, damage, scene, *words):
+    """Count how the check of the scene ends: refused with a message that says one of the words, or read."""
+    what = damage.__name__.replace("_", " ")
+    end = run(["check", case.write("scene.prm", scene)], case, timeout=TIME, prepare=lambda: limit_memory(MEMORY))
     if end.kind == TOO_LONG:
         case.count(what, HANG, f"more than {TIME} s")
     elif end.kind == STOPPED:
@@ -167,10 +164,9 @@ def main():
         with open(os.path.join(SOURCE_DIR, mesh), "rb") as file:
             text = damage(file.read(), random)
         case.write("damaged.msh", text)
-        scene = case.write("scene.prm", SCENE.format(dimension=dimension, horizon=random.choice([0.3, 0.7]),
-                                                     models=random.choice(["finite elements"] * 3 + ["finite elements, peridynamics"])))
-        end = run(["check", scene], case, timeout=TIME, prepare=limit_memory)
-        judge(case, damage.__name__.replace("_", " "), end, "damaged.msh'", "some node has no neighbour within it")  # whole, but with nodes far apart
+        scene = SCENE.format(dimension=dimension, horizon=random.choice([0.3, 0.7]),
+                             models=random.choice(["finite elements"] * 3 + ["finite elements, peridynamics"]))
+        check_file(case, damage, scene, "damaged.msh'", "some node has no neighbour within it")  # whole, but with nodes far apart
     campaign.finish()
 
 

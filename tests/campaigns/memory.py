@@ -7,9 +7,8 @@ Each has to end with exit status 1 and one message that speaks of memory and say
 """
 
 import os
-import resource
 
-from campaign import COMPLETE, GOOD, REFUSED, WRONG, Campaign, Process, run
+from campaign import COMPLETE, GOOD, REFUSED, WRONG, Campaign, Process, limit_memory, run
 from result_folder import wrong_results
 from scene_test import scene_text
 
@@ -93,12 +92,7 @@ def main():
         least = need_of(case, "start", TINY, ranks, known)
         most = need_of(case, name, SCENES[name], ranks, known)
         limit = round(least + case.random.uniform(0, 1) * (most - least))
-
-        def prepare():
-            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-        end = run(["run", case.write("scene.prm", SCENES[name]), "-q"], case, ranks, 120, prepare=prepare)
+        end = run(["run", case.write("scene.prm", SCENES[name]), "-q"], case, ranks, 120, prepare=lambda: limit_memory(limit))
         kind, detail = end.kind, end.detail
         problems = list(wrong_results(os.path.join(case.folder, "results"), end.status == 0))
         if kind in GOOD and problems:

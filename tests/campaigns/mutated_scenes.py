@@ -10,20 +10,14 @@ long has to stop when it is asked to.
 import glob
 import os
 import re
-import resource
 
-from campaign import COMPLETE, NO_MESSAGE, REFUSED, STOPPED, WRONG, Campaign, run
+from campaign import COMPLETE, NO_MESSAGE, REFUSED, STOPPED, WRONG, Campaign, limit_memory, run
 from mutations import Mutator, make_small, read_lines, value_of
 from result_folder import nulls_in, read_summary, wrong_numbers, wrong_results
 from scene_test import SOURCE_DIR, run_perideal
 
 TIME = 20  # seconds
 MEMORY = 3 << 30  # bytes of addresses
-
-
-def limit_memory():
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def all_entries():
@@ -90,7 +84,7 @@ def main():
         text, changes = mutator.mutate(lines, case.random, [other for _, other in scenes])
         ranks = 2 if case.random.random() < 0.04 else 1
         path = case.write("scene.prm", text)
-        end = run(["run", path, "-q", "-s", "Output directory=results"], case, ranks, TIME, prepare=limit_memory)
+        end = run(["run", path, "-q", "-s", "Output directory=results"], case, ranks, TIME, prepare=lambda: limit_memory(MEMORY))
         kind, detail = judge(case, end, text)
         case.count(f"{ranks} process{'es' if ranks > 1 else ''}", kind, f"{name}, {'+'.join(changes)}, {end.seconds:.1f} s: {detail}")
     campaign.finish()

@@ -70,11 +70,15 @@ def wrong_numbers(folder):
                         break
 
 
-def _torn_xml(path):
+def _entries(path, kind, wrong_of):
+    """What wrong_of finds in the entries of this kind of a file, or that the file is torn."""
     try:
-        return ElementTree.parse(path).getroot(), None
+        root = ElementTree.parse(path).getroot()
     except (ElementTree.ParseError, OSError) as problem:
-        return None, f"{os.path.basename(path)} ({os.path.getsize(path)} bytes): {problem}"
+        yield f"{os.path.basename(path)} ({os.path.getsize(path)} bytes): {problem}"
+        return
+    for entry in root.iter(kind):
+        yield from wrong_of(entry)
 
 
 def _wrong_pieces(path, seen):
@@ -85,17 +89,14 @@ def _wrong_pieces(path, seen):
     if not os.path.isfile(path):
         yield f"{os.path.basename(path)} is listed and does not exist"
         return
-    root, problem = _torn_xml(path)
-    if problem:
-        yield problem
+    beside = os.path.dirname(path)
+    yield from _entries(path, "Piece", lambda piece: _wrong_pieces(os.path.join(beside, piece.get("Source")), seen) if piece.get("Source") else ())
+
+
+def _wrong_data_set(item, folder, files):
+    name, _, inside = (item.text or "").strip().partition(":")
+    if not name.endswith(".h5"):
         return
-    for piece in root.iter("Piece"):
-        if piece.get("Source"):
-            yield from _wrong_pieces(os.path.join(os.path.dirname(path), piece.get("Source")), seen)
-
-
-def _wrong_data_set(text, dimensions, folder, files):
-    name, _, inside = text.strip().partition(":")
     path = os.path.join(folder, name)
     if path not in files:
         files[path] = None
@@ -114,28 +115,17 @@ def _wrong_data_set(text, dimensions, folder, files):
         return
     found = files[path][inside].shape
     files[path][inside][()]
-    if math.prod(found) != math.prod(int(number) for number in dimensions.split()):
-        yield f"{name}{inside} has {found} numbers where {dimensions} are listed"
+    if math.prod(found) != math.prod(int(number) for number in item.get("Dimensions").split()):
+        yield f"{name}{inside} has {found} numbers where {item.get('Dimensions')} are listed"
 
 
 def wrong_files(folder):
     """What is wrong with the lists of fields and what they refer to, and with the tables."""
     seen, files = set(), {}
     for path in sorted(glob.glob(os.path.join(folder, "*.pvd"))):
-        root, problem = _torn_xml(path)
-        if problem:
-            yield problem
-            continue
-        for entry in root.iter("DataSet"):
-            yield from _wrong_pieces(os.path.join(folder, entry.get("file")), seen)
+        yield from _entries(path, "DataSet", lambda entry: _wrong_pieces(os.path.join(folder, entry.get("file")), seen))
     for path in sorted(glob.glob(os.path.join(folder, "*.xdmf"))):
-        root, problem = _torn_xml(path)
-        if problem:
-            yield problem
-            continue
-        for item in root.iter("DataItem"):
-            if ".h5:" in (item.text or ""):
-                yield from _wrong_data_set(item.text, item.get("Dimensions"), folder, files)
+        yield from _entries(path, "DataItem", lambda item: _wrong_data_set(item, folder, files))
     for file in files.values():
         if file is not None:
             file.close()

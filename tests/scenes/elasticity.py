@@ -237,12 +237,17 @@ def laws():
     table.show()
 
 
+def of_square_bar():
+    """Torque and largest shear stress, by Saint-Venant's series."""
+    odd = range(1, 60, 2)
+    moment = 0.8 * (1 - 192 / math.pi ** 5 * sum(math.tanh(n * math.pi / 2) / n ** 5 for n in odd)) / 3
+    return moment, 0.8 * (1 - 8 / math.pi ** 2 * sum(1 / (n * n * math.cosh(n * math.pi / 2)) for n in odd))
+
+
 def torsion():
     """Saint-Venant's square bar."""
     table = Comparison("Torsion of a square bar, edge 1, G = 80, twist 0.01")
-    odd = range(1, 60, 2)
-    moment = 0.8 * (1 - 192 / math.pi ** 5 * sum(math.tanh(n * math.pi / 2) / n ** 5 for n in odd)) / 3
-    shear = 0.8 * (1 - 8 / math.pi ** 2 * sum(1 / (n * n * math.cosh(n * math.pi / 2)) for n in odd))
+    moment, shear = of_square_bar()
     # Measured: torque 1.52e-3 and 3.8e-4, stress -1.01e-3 and -2.5e-4; peridynamics +1.2e-2 and
     # -4.5e-5 of the torque.
     for n, of_torque, of_stress, of_bonds in ((12, 2.3e-3, 1.5e-3, 0.018), (24, 5.8e-4, 3.8e-4, 7e-5)):
@@ -260,9 +265,7 @@ def with_surface(name, law, layer="", more=None):
 
 def surface():
     """Corrections of cut families, and tractions in a layer, against closed forms."""
-    odd = range(1, 60, 2)
-    moment = 0.8 * (1 - 192 / math.pi ** 5 * sum(math.tanh(n * math.pi / 2) / n ** 5 for n in odd)) / 3
-    shear = 0.8 * (1 - 8 / math.pi ** 2 * sum(1 / (n * n * math.cosh(n * math.pi / 2)) for n in odd))
+    moment, shear = of_square_bar()
     beam = 40 + 1.2 * 10 / (100 / 2.6)
     names = ("1D bar: end", "1D bar, layer: end", "plate: end", "plate, layer: end", "plate: strain at the end", "plate: sxx at the free side", "cantilever: end", "torsion: torque", "torsion: stress at the face")
     # Measured gaps in %; bounds are 1.5 times these.

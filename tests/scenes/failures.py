@@ -7,7 +7,7 @@ import math
 import os
 from collections import namedtuple
 
-from scene_test import QUIET, SOURCE_DIR, TRACES, check, finish, print_table, run_scene
+from scene_test import QUIET, SOURCE_DIR, TRACES, check, check_message, finish, print_table, run_scene
 
 # Refused, or stopped: words of the message.
 REFUSED = {
@@ -209,8 +209,7 @@ def refused():
     for name, words in REFUSED.items():
         run = run_scene(f"prm/failures/{name}", QUIET, check_status=False)
         check(run.returncode == 1, f"{name}: exit status {run.returncode}")
-        for word in words:
-            check(word in run.stderr, f"{name}: the message does not say {word!r}: {run.stderr}")
+        check_message(run, *words, what=name)
         check(not any(trace in run.stderr for trace in TRACES) and run.stderr.count("error:") == 1, f"{name}: one message and no trace: {run.stderr}")
         if name in STOPPED:
             check(run.summary["status"] == STOPPED[name] and len(run.totals) > 0, f"{name}: {run.summary['status']}")

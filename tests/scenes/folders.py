@@ -18,7 +18,8 @@ import tempfile
 import time
 import xml.etree.ElementTree as xml
 
-from scene_test import EXECUTABLE, SOURCE_DIR, check, command_and_environment, run_parts, run_perideal, scene_text, temporary_folder, write_file
+from scene_test import EXECUTABLE, SOURCE_DIR, check, check_message, check_no_traces, command_and_environment, run_parts
+from scene_test import run_perideal, scene_text, temporary_folder, write_file
 
 SCENE = scene_text("""
 Dimension = 2
@@ -110,12 +111,10 @@ def wait_for_rows(process, results):
     return wait_for(lambda: process.poll() is not None or os.path.exists(path) and open(path).read().count("\n") > 3)
 
 
-def check_message(status, stderr, expected, *words):
+def check_end(status, stderr, expected, *words):
     check(status == expected, f"exit status {status}, expected {expected}:\n{stderr}")
-    for word in words:
-        check(word in stderr, f"the message does not say '{word}':\n{stderr}")
-    for trace in ("Signal:", "*** Process", "terminate called", "Stacktrace", "internal error", "PMIX ERROR", "HDF5-DIAG"):
-        check(trace not in stderr, f"'{trace}' in the output:\n{stderr}")
+    check_message(stderr, *words)
+    check_no_traces(stderr, "the run", "*** Process", "internal error", "PMIX ERROR", "HDF5-DIAG")
 
 
 def mixing():
@@ -147,7 +146,7 @@ def mixing():
     half = {"Output/Write every": "", "Output/Write at": "0.1, 0.2",
             "Boundary conditions/Dirichlet": "left: if(t < 0.15, 1, sqrt(-1)); right: 0"}
     status, _, stderr = run(results, half)
-    check_message(status, stderr, 1, "Dirichlet")
+    check_end(status, stderr, 1, "Dirichlet")
     check(status_of(results) == "diverged" and "peridynamics.pvd" in listing(results), "a run that failed half way keeps what it has")
     check_whole(results, "failed half way")
     check(run(results, {"Models": "finite elements", "Output/Fields": "vtu"})[0] == 0 and not [n for n in listing(results) if "peridynamics" in n],
@@ -161,13 +160,13 @@ def mixing():
             file.write("mine")
         before = listing(here)
         status, _, stderr = run(".", cwd=here)
-        check_message(status, stderr, 1, "Output directory", name)
+        check_end(status, stderr, 1, "Output directory", name)
         check(listing(here) == before, f"'Output directory = .' beside an own {name}: {sorted(listing(here))}")
     here = tempfile.mkdtemp(dir=FOLDER)
     for name in ("scene.prm", "data.csv"):
         shutil.copy(scene_file(), os.path.join(here, name))
     status, _, stderr = run(".", scene=os.path.join(here, "scene.prm"), cwd=here)
-    check_message(status, stderr, 1, "scene file itself")
+    check_end(status, stderr, 1, "scene file itself")
     os.rename(os.path.join(here, "scene.prm"), os.path.join(here, "my.prm"))
     for _ in range(2):
         check(run(".", scene=os.path.join(here, "my.prm"), cwd=here)[0] == 0, "'Output directory = .'")
@@ -207,7 +206,7 @@ def together():
     check(wait_for_rows(first, results), "the first run writes")
     for ranks in (1, 2):
         status, _, stderr = run(results, ranks=ranks)
-        check_message(status, stderr, 1, "another run", str(first.pid))
+        check_end(status, stderr, 1, "another run", str(first.pid))
     check(first.poll() is None and status_of(results) == "running", "the first run goes on")
     first.kill()
     first.wait()
@@ -223,7 +222,7 @@ def ends():
         process.send_signal(kind)
         _, stderr = process.communicate(timeout=60)
         if ranks == 1:  # mpirun has words and a status of its own
-            check_message(process.returncode, stderr, 3, "stopped", kind.name, results)
+            check_end(process.returncode, stderr, 3, "stopped", kind.name, results)
         check(process.returncode != 0 and status_of(results) == "stopped", f"{kind.name}: status {process.returncode}")
         check_whole(results, kind.name)
     results = os.path.join(FOLDER, "killed")
@@ -247,7 +246,7 @@ def ends():
     shutil.rmtree(results, ignore_errors=True)
     shutil.rmtree(results, ignore_errors=True)
     _, stderr = process.communicate(timeout=60)
-    check_message(process.returncode, stderr, 1, "cannot write", "No such file")
+    check_end(process.returncode, stderr, 1, "cannot write", "No such file")
 
     # half of the runs write into a folder of limited room: a limit on the size of files does the
     # same as a full disk
@@ -256,7 +255,7 @@ def ends():
         limited = os.path.join(FOLDER, f"limit{size}")
         process = start(limited, big, preexec_fn=lambda most=size: __import__("resource").setrlimit(1, (most, most)))
         _, stderr = process.communicate(timeout=60)
-        check_message(process.returncode, stderr, 1, "cannot write", "too large")
+        check_end(process.returncode, stderr, 1, "cannot write", "too large")
         if os.path.exists(limited):
             check_whole(limited, f"files of at most {size} bytes")
 
@@ -266,7 +265,7 @@ def ends():
              "Output/Write every=", "-s", "Output/Fields=none", "--output", study]
     done = subprocess.run(words, capture_output=True, text=True, timeout=100,
                           preexec_fn=lambda: __import__("resource").setrlimit(__import__("resource").RLIMIT_AS, (800 << 20, 800 << 20)))
-    check_message(done.returncode, done.stderr, 1, "1 of 3 rows", "memory")
+    check_end(done.returncode, done.stderr, 1, "1 of 3 rows", "memory")
     with open(os.path.join(study, "study.csv"), newline="") as file:
         states = {row["Domain/Cells"]: row["status"] for row in csv.DictReader(file)}
     check(states == {"12, 10": "finished", "900, 900": "failed", "13, 11": "finished"}, f"the rows of the study: {states}\n{done.stdout}")

@@ -14,7 +14,7 @@ import xml.etree.ElementTree as xml
 import h5py
 import numpy
 
-from scene_test import Run, check, check_less, print_table, run_parts, run_perideal, run_scene, scene_text
+from scene_test import Run, check, check_less, check_message, print_table, run_parts, run_perideal, run_scene, scene_text
 from scene_texts import body_of_bonds
 
 SOON = 20  # steps after the first growth
@@ -200,8 +200,7 @@ def stopped():
                 continue
             guard = run.summary["guard"]
             check(guard["monitor"] == monitor, f"{name}: {guard}")
-            for word in words:
-                check(word in run.stderr, f"{name}: {word!r} is not in {run.stderr}")
+            check_message(run, *words, what=name)
             check(run.summary["message"] in run.stderr, f"{name}: the summary's message is another one")
             check_readable(run, name, guard["time"])
             first = first_growth(run)
@@ -281,8 +280,7 @@ def check_told_of(what, run, monitor, words, first=0, last=math.inf):
     check(run.summary["status"] == "diverged", f"{what}: {run.summary['status']}")
     guard = run.summary.get("guard", {})
     check(guard.get("monitor") == monitor, f"{what}: {guard}, {run.stderr}")
-    for word in words:
-        check(word in run.stderr, f"{what}: {word!r} is not in {run.stderr}")
+    check_message(run, *words, what=what)
     check(first <= guard.get("time", -1) <= last, f"{what}: {guard}")
     return guard
 

@@ -15,7 +15,7 @@ import os
 import re
 import sys
 
-from scene_test import check, finish, print_table, run_perideal, run_scene, temporary_folder, write_file
+from scene_test import check, check_message, check_no_traces, finish, print_table, run_perideal, run_scene, temporary_folder, write_file
 from scene_texts import FOUR_CELLS, SQUARE_MESH
 
 SCENE = """
@@ -273,21 +273,15 @@ COMMANDS = [
     ("two scenes", ["run", "SCENE", "SCENE"], ["argument"]),
 ]
 
-TRACES = ("Stacktrace", "An error occurred in line", "terminate called", "Segmentation fault", "Signal:", "Process received signal",
-          "Additional information", "MPI_ABORT", "internal error", "exception", "Assert")
-
-
 def judge(name, status, stdout, stderr, words, results, ranks):
     """Count the checks of one mistake; returns the row of the table."""
     at = f"{name}, {ranks} process(es)"
     check(status == 1, f"{at}: exit status {status}\n{stdout[-600:]}{stderr[-1500:]}")
-    for trace in TRACES:
-        check(trace not in stdout + stderr, f"{at}: '{trace}' in the output\n{stderr[-1500:]}")
+    check_no_traces(stdout + stderr, at, "Process received signal", "internal error", "exception", "Assert")
     message = stderr.strip()
     n_messages = len(re.findall(r"^perideal: error: ", stderr, re.M))
     check(n_messages == 1 and message.startswith("perideal: error: "), f"{at}: {n_messages} messages\n{stderr[-1500:]}")
-    for word in words:
-        check(word in message, f"{at}: the message does not say {word!r}:\n  {message[-1500:]}")
+    check_message(message, *words, what=at)
     check(len(message) < 700, f"{at}: a message of {len(message)} characters")
     summary = os.path.join(results, "summary.json") if results else ""
     if os.path.exists(summary):

@@ -251,14 +251,27 @@ def check_clean_error(run, what="the run"):
     text = run.stdout + run.stderr
     check(run.returncode == 1, f"{what}: exit status {run.returncode} where 1 was expected\n{text[-2000:]}")
     check(run.stderr.strip() != "", f"{what}: no message on stderr")
-    for trace in TRACES:
+    check_no_traces(text, what)
+
+
+def check_no_traces(text, what, *more):
+    """Nothing that a user should never see, nor what more is given."""
+    for trace in TRACES + more:
         check(trace not in text, f"{what}: '{trace}' in the output\n{text[-2000:]}")
 
 
-def check_message(run, *words):
-    """The message of a failed run names all these words."""
+def check_message(run, *words, what="the run"):
+    """The message of a failed run, or a text, names all these words."""
+    message = getattr(run, "stderr", run)
     for word in words:
-        check(word in run.stderr, f"the message does not say '{word}':\n{run.stderr[-2000:]}")
+        check(word in message, f"{what}: the message does not say {word!r}:\n{message[-2000:]}")
+
+
+def check_one_message(stdout, stderr, words, what):
+    """One message that says all words, and no trace of a crash."""
+    check(stderr.count("perideal: error") == 1, f"{what}: one message, found\n{stdout[-1500:]}{stderr[-1500:]}")
+    check_no_traces(stdout + stderr, what, "An error occurred", "Signal", "internal error", "json.exception")
+    check_message(stderr, *words, what=what)
 
 
 def check(condition, message):

@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-from scene_test import SOURCE_DIR, check, check_close, check_less, run_driver, run_parts, run_perideal, scene_text, temporary_folder, write_file
+from scene_test import SOURCE_DIR, check, check_close, check_less, check_one_message, run_driver, run_parts, run_perideal, scene_text, temporary_folder, write_file
 
 PLATE = scene_text("""
 Title = Small plate with a crack
@@ -321,9 +321,7 @@ def mistakes():
             ("--only without the reference", None, [*SMALL, "--only", "FEM, pairs"], ["'reference, 24 x 24'", "--only"])):
         path = plate if scene is None else write("wrong.prm", scene)
         stdout, stderr, _ = study(path, *options, output="mistakes", expect=1)
-        check(stderr.count("perideal: error") == 1, f"{what}: one message, found\n{stdout}{stderr}")
-        for word in words:
-            check(word in stderr, f"{what}: the message does not say {word!r}:\n{stderr}")
+        check_one_message(stdout, stderr, words, what)
     for arguments in (["work_precision"], ["work_precision", plate, plate], [plate, "--cells", "9, 9 | 17, 17"]):
         status, _, stderr = run_driver(["study", *arguments])
         check(status == 1 and "work_precision" in stderr, f"study {arguments}: {stderr}")

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/solvers/linear_solver.h>
-
 #include "operator_test_tools.h"
 
 namespace PeriDeal
@@ -23,13 +21,6 @@ namespace PeriDeal
                              {"Boundary conditions/Symmetry", "right, top"}};
 
 
-    /** What the last residual() or apply() has found to enter, of all processes. */
-    double entering(const Operator &op)
-    {
-      return dealii::Utilities::MPI::sum(op.entering(), MPI_COMM_WORLD);
-    }
-
-
     /**
      * entering() is what the balance says of sides and sources, with and without finish(), and
      * linear in the field but for loads.
@@ -47,18 +38,19 @@ namespace PeriDeal
         }
       Vector x = problem.values([](const Point<dim> &p) { return std::cos(3. * p[0]) - p[0]; }),
              y = problem.vector(), sum = u;
+      const auto entering = [&] { return sum_of_all(op.entering()); };
       op.residual(y, u, 0.7);
-      const double alone = entering(op);
+      const double alone = entering();
       EXPECT_NEAR(alone, heat, 1e-11 * size) << what;
       op.residual_then(y, u, 0.7, [](const unsigned int, const unsigned int) {});
-      EXPECT_NEAR(entering(op), heat, 1e-11 * size) << what;
+      EXPECT_NEAR(entering(), heat, 1e-11 * size) << what;
       op.distribute_homogeneous(x);
       sum += x;
       op.distribute(sum, 0.7);
       op.residual(y, sum, 0.7);
-      const double both = entering(op);
+      const double both = entering();
       op.apply(y, x);
-      EXPECT_NEAR(entering(op), both - alone, 1e-11 * (size + std::abs(both))) << what;
+      EXPECT_NEAR(entering(), both - alone, 1e-11 * (size + std::abs(both))) << what;
     }
 
 
@@ -83,8 +75,7 @@ namespace PeriDeal
       EXPECT_LT(std::abs(moving.imbalance()), 1e-12 * size) << what;
       expect_entering(what, problem, u);
 
-      solve_steady(problem.op(), u, 0., 1e-14, 1000);
-      const Balance steady = problem.op().balance(u, 0., true);
+      const Balance steady = problem.op().balance(problem.steady(1e-14, u), 0., true);
       EXPECT_GT(steady.throughput(), 0.1) << what;
       EXPECT_LT(std::abs(steady.imbalance()), 1e-12 * steady.throughput()) << what;
     }
@@ -231,9 +222,8 @@ namespace PeriDeal
                                   {"Boundary conditions/Flux", "right: 3"},
                                   {"Initial and source/Source", "x"}},
                                  model);
-        Vector           u = problem.vector();
-        solve_steady(problem.op(), u, 0., 1e-13, 1000);
-        const Balance balance = problem.op().balance(u, 0., true);
+        const Vector     u       = problem.steady(1e-13);
+        const Balance    balance = problem.op().balance(u, 0., true);
         EXPECT_NEAR(balance.sides.at("right"), 3., 1e-12);
         EXPECT_NEAR(balance.sources, 0.5, 1e-12);
         // The natural side of the prescribed node holds no source of its own in PD: it is not

@@ -164,7 +164,7 @@ namespace PeriDeal
     const auto n_left = std::count_if(body.all.begin(), body.all.end(), [&](const unsigned int i) {
       return left(i) > 1.;
     });
-    EXPECT_EQ(of_cells.nonzeros, dealii::Utilities::MPI::sum(n_left, MPI_COMM_WORLD));
+    EXPECT_EQ(of_cells.nonzeros, sum_of_all(n_left));
     body.bonds.add_to(size);
     EXPECT_FALSE(size.form.empty());
     EXPECT_GT(size.bonds, 0u); // which a lattice does not store
@@ -210,7 +210,7 @@ namespace PeriDeal
         EXPECT_EQ(touched.contains(i), before[i] != after[i]);
         n += touched.contains(i) ? 1 : 0;
       }
-    EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 4u);
+    EXPECT_GT(sum_of_all(n), 4u);
     const Vector u = body.field(), expected = body.sums(u);
     Vector       y = body.vector();
     matrix.vmult(y, u);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dimensions.h"
 #include "elastic_test_tools.h"
 
 using namespace PeriDeal;
@@ -17,12 +18,6 @@ namespace
 {
   using dealii::Point;
   using dealii::Tensor;
-
-  double sum_of_all(const double value)
-  {
-    return dealii::Utilities::MPI::sum(value, MPI_COMM_WORLD);
-  }
-
 
   /** A body of a scene file at nodes of a lattice. */
   template <int dim>
@@ -194,27 +189,27 @@ namespace
 
   const char *const fine[] = {"", "", "50, 37", "19, 15, 11"};
 
-  template <int dim>
-  void expect_sharp_bounds()
-  {
-    const Body<dim>              body(box<dim>() + Settings{{"Domain/Cells", fine[dim]},
-                                               {"Elasticity/Solver", "dynamics"},
-                                               {"Material/Critical stretch", "0.05"}},
-                         ModelKind::peridynamics);
-    const StretchScreen<dim>     screen(body.states->bonds().families,
-                                    body.states->breaking().critical_stretches());
-    const dealii::Tensor<2, dim> gradient = some_gradient<dim>();
-    Vector u = body.values([&](const Point<dim> &p) { return Tensor<1, dim>(gradient * p); });
-    u.update_ghost_values();
-    const double largest = dealii::eigenvalues(dealii::symmetrize(gradient))[0];
-    screen.suspects(u.begin(), 0.);
-    for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
-      EXPECT_NEAR(screen.bound(i), largest, 1e-8);
-    u *= 0.0499 / largest;
-    EXPECT_TRUE(screen.suspects(u.begin(), 0.).empty());
-    EXPECT_EQ(screen.suspects(u.begin(), -0.001).size(), body.nodes->n_owned());
-  }
 } // namespace
+
+
+TEST_IN_DIMENSIONS(BrokenLattice, bounds_of_a_uniform_strain_are_sharp, 2, 3)
+{
+  const Body<dim>          body(box<dim>() + Settings{{"Domain/Cells", fine[dim]},
+                                             {"Elasticity/Solver", "dynamics"},
+                                             {"Material/Critical stretch", "0.05"}},
+                       ModelKind::peridynamics);
+  const StretchScreen<dim> screen(body.states->bonds().families,
+                                  body.states->breaking().critical_stretches());
+  Vector                   u = body.values(linear_field<dim>);
+  u.update_ghost_values();
+  const double largest = dealii::eigenvalues(dealii::symmetrize(some_gradient<dim>()))[0];
+  screen.suspects(u.begin(), 0.);
+  for (unsigned int i = 0; i < body.nodes->n_owned(); ++i)
+    EXPECT_NEAR(screen.bound(i), largest, 1e-8);
+  u *= 0.0499 / largest;
+  EXPECT_TRUE(screen.suspects(u.begin(), 0.).empty());
+  EXPECT_EQ(screen.suspects(u.begin(), -0.001).size(), body.nodes->n_owned());
+}
 
 
 TEST(BrokenLattice, no_stretch_is_above_its_bound)
@@ -233,13 +228,6 @@ TEST(BrokenLattice, no_stretch_is_above_its_bound)
                        true);
       expect_bounds<3>({{"Domain/Cells", fine[3]}}, roughness, false);
     }
-}
-
-
-TEST(BrokenLattice, bounds_of_a_uniform_strain_are_sharp)
-{
-  expect_sharp_bounds<2>();
-  expect_sharp_bounds<3>();
 }
 
 

@@ -26,7 +26,7 @@ namespace
   const std::string scene_text = "set Title = a\nsubsection Domain\n  set Cells = 4, 4\nend\n"
                                  "subsection Time\n  set End time = 1\n  set Stepper = rk4\nend\n";
 
-  const CheckpointHeader header{PERIDEAL_VERSION, scene_text, 2, 1, 0.25, 12.5};
+  const CheckpointHeader header{PERIDEAL_VERSION, scene_text, 2, 1, 0.25, 12.5, {}};
 
 
   /** Of so many nodes with two components each, in their order or dealt out. */
@@ -136,6 +136,17 @@ namespace
                   "");
     }
 
+    /** A state of so many nodes in a file. */
+    State save(const std::string &name, const unsigned int n_nodes) const
+    {
+      State saved(MPI_COMM_WORLD, n_nodes);
+      saved.fill();
+      CheckpointWriter writer(name, header, MPI_COMM_WORLD);
+      saved.exchange(writer);
+      EXPECT_EQ(writer.finish(), 0);
+      return saved;
+    }
+
     /** What is taken on resume. */
     std::string newest(std::vector<std::string> &notes) const
     {
@@ -149,17 +160,12 @@ namespace
   {
     for (const unsigned int n_nodes : {1, 2, 50})
       {
-        const std::string name = place + "/of_all.h5";
-        State             saved(MPI_COMM_WORLD, n_nodes);
-        saved.fill();
-        CheckpointWriter writer(name, header, MPI_COMM_WORLD);
-        saved.exchange(writer);
-        ASSERT_EQ(writer.finish(), 0);
-        if (is_first())
-          {
-            EXPECT_EQ(fault_of_checkpoint(name), "");
-            EXPECT_FALSE(there_is("of_all.h5.part"));
-          }
+        const std::string name  = place + "/of_all.h5";
+        const State       saved = save(name, n_nodes);
+        on_first([&] {
+          EXPECT_EQ(fault_of_checkpoint(name), "");
+          EXPECT_FALSE(there_is("of_all.h5.part"));
+        });
         CheckpointReader reader(name, MPI_COMM_WORLD);
         EXPECT_EQ(reader.header().scene, scene_text);
         EXPECT_EQ(reader.header().time, 0.25);
@@ -182,11 +188,7 @@ namespace
   {
     const std::string  name = place + "/a.h5", alone = place + "/alone.h5";
     const unsigned int n_proc = n_mpi_processes(MPI_COMM_WORLD);
-    State              saved(MPI_COMM_WORLD, 50);
-    saved.fill();
-    CheckpointWriter writer(name, header, MPI_COMM_WORLD);
-    saved.exchange(writer);
-    ASSERT_EQ(writer.finish(), 0);
+    save(name, 50);
     {
       State            loaded(MPI_COMM_SELF, 50);
       CheckpointReader reader(name, MPI_COMM_SELF);
@@ -194,15 +196,13 @@ namespace
       loaded.expect_all_there();
       EXPECT_EQ(loaded.share, n_proc * (n_proc + 1) / 2.);
     }
-    if (is_first())
-      {
-        State of_one(MPI_COMM_SELF, 50);
-        of_one.fill();
-        CheckpointWriter writer_alone(alone, header, MPI_COMM_SELF);
-        of_one.exchange(writer_alone);
-        ASSERT_EQ(writer_alone.finish(), 0);
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] {
+      State of_one(MPI_COMM_SELF, 50);
+      of_one.fill();
+      CheckpointWriter writer_alone(alone, header, MPI_COMM_SELF);
+      of_one.exchange(writer_alone);
+      EXPECT_EQ(writer_alone.finish(), 0);
+    });
     CheckpointReader reader(alone, MPI_COMM_WORLD);
     State            loaded(MPI_COMM_WORLD, 50);
     loaded.exchange(reader);
@@ -214,11 +214,7 @@ namespace
   TEST_F(CheckpointTest, the_state_of_another_mesh_is_refused)
   {
     const std::string name = place + "/a.h5";
-    State             saved(MPI_COMM_WORLD, 50);
-    saved.fill();
-    CheckpointWriter writer(name, header, MPI_COMM_WORLD);
-    saved.exchange(writer);
-    ASSERT_EQ(writer.finish(), 0);
+    save(name, 50);
     CheckpointReader reader(name, MPI_COMM_WORLD);
     State            finer(MPI_COMM_WORLD, 60);
     expect_parts(message_of([&] { finer.exchange(reader); }), {"'peridynamics/u'", "mesh"});
@@ -229,35 +225,28 @@ namespace
   TEST_F(CheckpointTest, the_newest_are_kept)
   {
     run(3);
-    if (is_first())
-      {
-        EXPECT_FALSE(there_is("checkpoints/1.h5"));
-        EXPECT_TRUE(there_is("checkpoints/2.h5"));
-        EXPECT_TRUE(there_is("checkpoints/3.h5"));
-        replace("checkpoints/4.h5", "mine");      // no run's own
-        replace("checkpoints/3.h5.part", "half"); // what a kill leaves
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] {
+      EXPECT_FALSE(there_is("checkpoints/1.h5"));
+      EXPECT_TRUE(there_is("checkpoints/2.h5"));
+      EXPECT_TRUE(there_is("checkpoints/3.h5"));
+      replace("checkpoints/4.h5", "mine");      // no run's own
+      replace("checkpoints/3.h5.part", "half"); // what a kill leaves
+    });
     ResultFolder folder(place, "scene.prm", {}, MPI_COMM_WORLD, RunMode::resume);
     Checkpoints  checkpoints(folder, 1, MPI_COMM_WORLD);
-    if (is_first())
-      {
-        EXPECT_FALSE(there_is("checkpoints/3.h5.part"));
-      }
+    on_first([&] { EXPECT_FALSE(there_is("checkpoints/3.h5.part")); });
     EXPECT_EQ(checkpoints.write(header, [](Archive &) {}), "");
     EXPECT_EQ(checkpoints.last(), "checkpoints/5.h5");
-    if (is_first())
-      {
-        EXPECT_FALSE(there_is("checkpoints/2.h5"));
-        EXPECT_FALSE(there_is("checkpoints/3.h5"));
-        EXPECT_TRUE(there_is("checkpoints/5.h5"));
-      }
+    on_first([&] {
+      EXPECT_FALSE(there_is("checkpoints/2.h5"));
+      EXPECT_FALSE(there_is("checkpoints/3.h5"));
+      EXPECT_TRUE(there_is("checkpoints/5.h5"));
+    });
     checkpoints.remove_all();
-    if (is_first())
-      {
-        EXPECT_FALSE(there_is("checkpoints/5.h5"));
-        EXPECT_EQ(content("checkpoints/4.h5"), "mine");
-      }
+    on_first([&] {
+      EXPECT_FALSE(there_is("checkpoints/5.h5"));
+      EXPECT_EQ(content("checkpoints/4.h5"), "mine");
+    });
   }
 
 
@@ -273,10 +262,7 @@ namespace
     if (is_first())
       whole = content("checkpoints/2.h5");
     const auto expect_fault = [&](const std::string &bytes, const std::string &fault) {
-      MPI_Barrier(MPI_COMM_WORLD);
-      if (is_first())
-        replace("checkpoints/2.h5", bytes);
-      MPI_Barrier(MPI_COMM_WORLD);
+      on_first([&] { replace("checkpoints/2.h5", bytes); });
       notes.clear();
       EXPECT_EQ(newest(notes), "checkpoints/1.h5");
       ASSERT_EQ(notes.size(), 1u);
@@ -302,11 +288,8 @@ namespace
     if (is_first())
       other_format.replace(0, 21, "PeriDeal checkpoint 9");
     expect_fault(other_format, "format 9");
-    if (is_first())
-      replace("checkpoints/1.h5", "");
-    MPI_Barrier(MPI_COMM_WORLD);
-    expect_parts(message_of([&] { newest(notes); }),
-                 {"nothing to resume", "1.h5", "2.h5", "--overwrite"});
+    on_first([&] { replace("checkpoints/1.h5", ""); });
+    expect_error([&] { newest(notes); }, {"nothing to resume", "1.h5", "2.h5", "--overwrite"});
   }
 
 
@@ -315,11 +298,10 @@ namespace
     run(1);
     ResultFolder folder(place, "scene.prm", {}, MPI_COMM_WORLD, RunMode::resume);
     Checkpoints  checkpoints(folder, 1, MPI_COMM_WORLD);
-    if (is_first()) // no file can get this name
+    on_first([&] { // no file can get these names
       fs::create_directories(place + "/checkpoints/2.h5.part/full");
-    if (is_first())
       fs::create_directories(place + "/checkpoints/3.h5/full");
-    MPI_Barrier(MPI_COMM_WORLD);
+    });
     State state(MPI_COMM_WORLD, 11);
     state.fill();
     const auto save = [&](Archive &archive) {
@@ -329,17 +311,12 @@ namespace
         fs::rename(place + "/checkpoints", place + "/gone");
     };
     expect_parts(checkpoints.write(header, save), {"checkpoints/4.h5", "could not be written"});
-    if (is_first())
-      fs::rename(place + "/gone", place + "/checkpoints");
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] { fs::rename(place + "/gone", place + "/checkpoints"); });
     EXPECT_NO_THROW(folder.check());
     std::vector<std::string> notes;
     EXPECT_EQ(newest(notes), "checkpoints/1.h5");
     EXPECT_EQ(notes.size(), 1u); // of 3.h5, a folder
-    if (is_first())
-      {
-        EXPECT_EQ(fault_of_checkpoint(place + "/checkpoints/1.h5"), "");
-      }
+    on_first([&] { EXPECT_EQ(fault_of_checkpoint(place + "/checkpoints/1.h5"), ""); });
   }
 
 
@@ -352,25 +329,22 @@ namespace
     expect_parts(begin(RunMode::begin), {place, "--resume", "--overwrite"});
     EXPECT_EQ(begin(RunMode::overwrite), ""); // and ends without results
     EXPECT_EQ(begin(RunMode::resume), "");
-    if (is_first())
-      {
-        EXPECT_TRUE(there_is("checkpoints/1.h5"));
-        // killed without results
-        fs::create_directories(place + "/.perideal/previous/checkpoints");
-        fs::rename(place + "/checkpoints/1.h5", place + "/.perideal/previous/checkpoints/1.h5");
-        fs::rename(place + "/.perideal/files", place + "/.perideal/previous/files");
-        replace(".perideal/files", "b.csv\n");
-        replace("b.csv", "half");
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] {
+      EXPECT_TRUE(there_is("checkpoints/1.h5"));
+      // killed without results
+      fs::create_directories(place + "/.perideal/previous/checkpoints");
+      fs::rename(place + "/checkpoints/1.h5", place + "/.perideal/previous/checkpoints/1.h5");
+      fs::rename(place + "/.perideal/files", place + "/.perideal/previous/files");
+      replace(".perideal/files", "b.csv\n");
+      replace("b.csv", "half");
+    });
     expect_parts(begin(RunMode::begin), {"--resume"});
     EXPECT_EQ(begin(RunMode::resume), "");
-    if (is_first())
-      {
-        EXPECT_TRUE(there_is("checkpoints/1.h5"));
-        EXPECT_FALSE(there_is("b.csv"));
-        EXPECT_FALSE(there_is(".perideal/previous"));
-      }
+    on_first([&] {
+      EXPECT_TRUE(there_is("checkpoints/1.h5"));
+      EXPECT_FALSE(there_is("b.csv"));
+      EXPECT_FALSE(there_is(".perideal/previous"));
+    });
   }
 
 

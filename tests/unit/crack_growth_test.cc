@@ -214,7 +214,7 @@ namespace PeriDeal
     const Settings graded{{"Domain/Cells", "48, 40"}, {"Domain/Coarsening", "2"}};
     // What a stepper does is the same on any number of processes.
     std::vector<std::string> steppers{"chebyshev", "sdirk2"};
-    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+    if (n_processes() == 1)
       steppers.insert(steppers.end(), {"euler", "rkc2"});
     for (const ModelKind model :
          {ModelKind::peridynamics, ModelKind::finite_elements, ModelKind::coupled})
@@ -294,15 +294,10 @@ namespace PeriDeal
 
   TEST(CrackGrowth, mistakes)
   {
-    using SceneTests::message_of;
-    const auto fault = [](const Settings &more) {
-      return message_of([&] {
-        Scene<2> scene;
-        OperatorTests::set(scene, square + growing + more);
-      });
-    };
+    using SceneTests::expect_error;
     const auto expect = [&](const Settings &more, const std::vector<std::string> &parts) {
-      SceneTests::expect_parts(fault(more), parts);
+      Scene<2> scene;
+      expect_error([&] { OperatorTests::set(scene, square + growing + more); }, parts);
     };
     expect({{"Cracks/Growth", "7: 0, 1,0"}},
            {"'Growth' in section 'Cracks'", "no end point 7", "1 to 4"});
@@ -323,14 +318,16 @@ namespace PeriDeal
            {"'Growth'", "end point 4 turns back at (0.72, 0.83)"});
     for (const std::string path : {"2: 0, 0.5,0.3,0.4 | 0.5, 0.7,0.3,0.4 | 1, 0.4,0.3,0.4",
                                    "2: 0, 0.5,0.3,0.4 | 1, 0.4,0.4,0.4"})
-      SceneTests::expect_parts(message_of([&] {
-                                 Scene<3> scene;
-                                 OperatorTests::set(
-                                   scene,
-                                   {{"Cracks/Polygons", "0.3,0.3,0.4 ; 0.5,0.3,0.4 ; 0.5,0.6,0.4"},
-                                    {"Cracks/Paths", path}});
-                               }),
-                               {"'Paths'", "corner 2 moves into its polygon"});
+      {
+        Scene<3> scene;
+        expect_error(
+          [&] {
+            OperatorTests::set(scene,
+                               {{"Cracks/Polygons", "0.3,0.3,0.4 ; 0.5,0.3,0.4 ; 0.5,0.6,0.4"},
+                                {"Cracks/Paths", path}});
+          },
+          {"'Paths'", "corner 2 moves into its polygon"});
+      }
     expect({{"Cracks/Growth", ""}, {"Cracks/Paths", ""}}, {"'Segments'", "no length", "Growth"});
     expect({{"Cracks/Mesh", "faces"}}, {"'Mesh' in section 'Cracks'", "pairs"});
     expect({{"Time/Stepper", "euler"}, {"Time/Time step", "0.3"}},
@@ -348,8 +345,8 @@ namespace PeriDeal
     expect({{"Cracks/Transmission", "-1"}}, {"'Transmission'", "from 0 to 1"});
     // The last of four cracks around a node.
     for (const ModelKind model : {ModelKind::peridynamics, ModelKind::finite_elements})
-      SceneTests::expect_parts(
-        message_of([&] {
+      expect_error(
+        [&] {
           const Problem<2> problem(
             square +
               Settings{
@@ -359,14 +356,14 @@ namespace PeriDeal
                 {"Time/End time", "1"}},
             model);
           grow(problem.op());
-        }),
+        },
         {"node at (0.6, 0.5)", "'Cracks'"});
     // A node between cracks has no bond upwards or downwards.
-    SceneTests::expect_parts(
-      message_of([] {
+    expect_error(
+      [] {
         Problem<2>(square + Settings{{"Cracks/Segments", "-1,0.48 ; 2,0.48 ; -1,0.52 ; 2,0.52"},
                                      {"Peridynamics/Surface correction", "energy"}});
-      }),
+      },
       {"'Surface correction = energy'", "'Peridynamics'", "no bond left", "y"});
   }
 } // namespace PeriDeal

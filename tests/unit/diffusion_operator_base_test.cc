@@ -20,7 +20,7 @@ namespace PeriDeal
         : DiffusionOperatorBase<2>(scene, 0., nullptr, [](Vector &noise) { noise = 0.5; })
       {
         const unsigned int n     = 5;
-        const auto         first = n * dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+        const auto         first = n * this_process();
         dealii::IndexSet   owned(n * n_processes());
         owned.add_range(first, first + n);
         set_layout(

@@ -3,6 +3,8 @@
 
 #include "elastic_test_tools.h"
 
+#include <perideal/solvers/linear_solver.h>
+
 namespace PeriDeal
 {
   namespace OperatorTests
@@ -67,8 +69,126 @@ namespace PeriDeal
     }
 
 
-    template struct Body<1>;
-    template struct Body<2>;
-    template struct Body<3>;
+    template <int dim>
+    unsigned int Body<dim>::n_owned() const
+    {
+      return op().lumped_capacity().locally_owned_size() / dim;
+    }
+
+
+    template <int dim>
+    Vector Body<dim>::vector() const
+    {
+      Vector v;
+      op().initialize_vector(v);
+      return v;
+    }
+
+
+    template <int dim>
+    Vector Body<dim>::product(const Vector &x) const
+    {
+      Vector y = vector();
+      op().multiply(y, x);
+      return y;
+    }
+
+
+    template <int dim>
+    Vector Body<dim>::unbalanced(const Vector &u) const
+    {
+      Vector r = vector();
+      op().unbalanced(r, u, 0.);
+      return r;
+    }
+
+
+    template <int dim>
+    Vector Body<dim>::residual(const Vector &u) const
+    {
+      Vector r = vector();
+      op().residual(r, u, 0.);
+      return r;
+    }
+
+
+    template <int dim>
+    Vector Body<dim>::at_rest(const double tolerance) const
+    {
+      Vector u = vector(), change = vector();
+      op().distribute(u, 0.);
+      LinearSolver(op(), tolerance, 2000).solve(0., 1., change, residual(u));
+      u += change;
+      op().distribute(u, 0.); // hanging nodes
+      return u;
+    }
+
+
+    template <int dim>
+    double difference(const Body<dim> &body,
+                      const Vector    &x,
+                      const Body<dim> &whole,
+                      const Vector    &y,
+                      const double     above)
+    {
+      double largest = 0.;
+      for_each_pair(
+        body,
+        whole,
+        [&](const unsigned int i, const unsigned int k) {
+          for (unsigned int d = 0; d < dim; ++d)
+            largest =
+              std::max(largest,
+                       std::abs(x.local_element(dim * i + d) - y.local_element(dim * k + d)));
+        },
+        above);
+      return largest;
+    }
+
+
+    template <int dim>
+    void expect_derivatives(const Body<dim> &body,
+                            const Vector    &u,
+                            const Vector    &of_bumpy,
+                            const double     step,
+                            const double     accuracy_of_forces,
+                            const double     accuracy_of_tangent)
+    {
+      const ElasticOperator &op  = body.op();
+      const Vector           way = body.values(bumpy_vector<dim>);
+      Vector                 up = u, down = u;
+      up.add(step, way);
+      down.add(-step, way);
+      const double slope = (op.energy(up) - op.energy(down)) / (2. * step);
+      EXPECT_NEAR(slope, -(body.unbalanced(u) * way), accuracy_of_forces * std::abs(slope));
+      Vector change = body.unbalanced(down);
+      change -= body.unbalanced(up);
+      change *= 1. / (2. * step);
+      EXPECT_LT(relative_difference(change, of_bumpy), accuracy_of_tangent);
+      const DenseProperties dense(op);
+      EXPECT_LT(dense.asymmetry, 1e-13);
+      const Spectrum spectrum = op.spectrum();
+      EXPECT_LE(dense.largest, spectrum.safe * (1. + 1e-12));
+      EXPECT_LE(dense.largest, spectrum.sharp * 1.02);
+    }
+
+
+#define INSTANTIATE(dim)                                \
+  template struct Body<dim>;                            \
+  template double difference(const Body<dim> &,         \
+                             const Vector &,            \
+                             const Body<dim> &,         \
+                             const Vector &,            \
+                             const double);             \
+  template void   expect_derivatives(const Body<dim> &, \
+                                     const Vector &,    \
+                                     const Vector &,    \
+                                     const double,      \
+                                     const double,      \
+                                     const double);
+
+    INSTANTIATE(1)
+    INSTANTIATE(2)
+    INSTANTIATE(3)
   } // namespace OperatorTests
 } // namespace PeriDeal

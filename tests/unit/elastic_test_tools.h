@@ -26,6 +26,22 @@ namespace PeriDeal
 
       const dealii::Point<dim> &position(const unsigned int node) const;
 
+      unsigned int n_owned() const;
+
+      Vector vector() const;
+
+      /** K x, held unknowns too. */
+      Vector product(const Vector &x) const;
+
+      /** What acts on the nodes at u. */
+      Vector unbalanced(const Vector &u) const;
+
+      /** f - K u. */
+      Vector residual(const Vector &u) const;
+
+      /** The displacement at rest of a linear body. */
+      Vector at_rest(const double tolerance = 1e-11) const;
+
       /** A vector with the values f(p)[component] at the owned nodes. */
       template <typename Function>
       Vector values(const Function &f) const
@@ -48,6 +64,51 @@ namespace PeriDeal
       std::unique_ptr<ElasticElements<dim>>       elements;
       std::unique_ptr<StateOperator<dim>>         states;
     };
+
+
+    /**
+     * visit(i, k): owned nodes at one place of a body and of one that each process has whole. Every
+     * node of the first has to be there, but for those below a plane across the first axis.
+     */
+    template <int dim, typename Visit>
+    void for_each_pair(const Body<dim> &body,
+                       const Body<dim> &whole,
+                       const Visit     &visit,
+                       const double     above = -1e300)
+    {
+      std::map<std::array<long, dim>, unsigned int> nodes;
+      for (unsigned int k = 0; k < whole.n_owned(); ++k)
+        nodes[place<dim>(whole.position(k))] = k;
+      for (unsigned int i = 0; i < body.n_owned(); ++i)
+        if (body.position(i)[0] > above)
+          {
+            const auto found = nodes.find(place<dim>(body.position(i)));
+            ASSERT_TRUE(found != nodes.end()) << "no node at " << body.position(i);
+            visit(i, found->second);
+          }
+    }
+
+
+    /** Largest difference of vectors of such bodies on this process. */
+    template <int dim>
+    double difference(const Body<dim> &body,
+                      const Vector    &x,
+                      const Body<dim> &whole,
+                      const Vector    &y,
+                      const double     above = -1e300);
+
+
+    /**
+     * Forces at u are the slope of the energy, and the tangent there, whose product with
+     * bumpy_vector is given, that of the forces; it is symmetric, and its bounds hold.
+     */
+    template <int dim>
+    void expect_derivatives(const Body<dim> &body,
+                            const Vector    &u,
+                            const Vector    &of_bumpy,
+                            const double     step,
+                            const double     accuracy_of_forces,
+                            const double     accuracy_of_tangent);
 
 
     inline const char *const lists[] = {"", "1", "1, 0.75", "1, 0.75, 0.5"};
@@ -80,6 +141,13 @@ namespace PeriDeal
         for (unsigned int b = 0; b < dim; ++b)
           gradient[a][b] = g[3 * a + b];
       return gradient;
+    }
+
+
+    template <int dim>
+    dealii::Tensor<1, dim> linear_field(const dealii::Point<dim> &p)
+    {
+      return some_gradient<dim>() * p;
     }
 
 

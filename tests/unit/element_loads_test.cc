@@ -35,7 +35,7 @@ namespace
     const auto add_up = [&](const dealii::types::boundary_id side) {
       Tensor<1, dim> &sum = sums[side];
       for (unsigned int d = 0; d < dim; ++d)
-        sum[d] = dealii::Utilities::MPI::sum(sum[d], MPI_COMM_WORLD);
+        sum[d] = sum_of_all(sum[d]);
     };
     for (unsigned int side = 0; side < n_sides; ++side)
       add_up(side);

@@ -30,12 +30,9 @@ namespace
                  const std::string &zone,
                  const bool         hole = false)
   {
-    const std::string all   = dim == 1 ? "left: F; right: F" :
-                              dim == 2 ? "left: F; right: F; bottom: F; top: F" :
-                                         "left: F; right: F; bottom: F; top: F; back: F; front: F";
-    std::string       sides = hole ? "hole: (" + field + "); " : "";
-    for (const char c : all)
-      sides += c == 'F' ? "(" + field + ")" : std::string(1, c);
+    std::string sides = hole ? "hole: (" + field + "); " : "";
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      sides += box_side_names()[side] + ": (" + field + "); ";
     return {{"Boundary conditions/Dirichlet", sides},
             {"Initial and source/Source", source},
             {"Initial and source/Initial value", field},
@@ -50,10 +47,9 @@ namespace
   {
     const Expression &field = problem.scene.initial_and_source.initial_value;
     Vector exact = problem.values([&](const dealii::Point<dim> &p) { return field.value(p); });
-    Vector r = problem.vector(), e = problem.vector();
+    Vector e     = problem.vector();
     problem.op().distribute(exact, 0.);
-    problem.op().residual(r, exact, 0.);
-    LinearSolver(problem.op(), 1e-6, 1000).solve(0., 1., e, r);
+    LinearSolver(problem.op(), 1e-6, 1000).solve(0., 1., e, problem.residual(exact));
     return e.linfty_norm() / exact.linfty_norm();
   }
 
@@ -209,10 +205,8 @@ TEST(Exchange, both_forms_agree)
       EXPECT_EQ(form.fem->size().form, "lattice");
       EXPECT_EQ(matrix.fem->size().form, "matrix");
       EXPECT_EQ(form.fem->size().bonds, matrix.fem->size().bonds);
-      const Vector u = form.values(bumpy<2>);
-      Vector       a = form.vector(), b = matrix.vector();
-      form.op().residual(a, u, 0.);
-      matrix.op().residual(b, matrix.values(bumpy<2>), 0.);
+      const Vector a = form.residual(form.values(bumpy<2>)),
+                   b = matrix.residual(matrix.values(bumpy<2>));
       EXPECT_LT(difference(form, a, matrix, b), 1e-13 * a.linfty_norm());
       EXPECT_LT(difference(form, form.op().diagonal(), matrix, matrix.op().diagonal()), 1e-13);
     }
@@ -230,9 +224,7 @@ TEST(Exchange, scaled_contact_conductance)
                                         {"Coupling/Zone", zone},
                                         {"Boundary conditions/Dirichlet", "bottom: 0 ; top: 1"}},
                              ModelKind::coupled);
-    Vector           u = problem.vector();
-    solve_steady(problem.op(), u, 0., 1e-12, 1000);
-    return problem.op().balance(u, 0., true).sides.at("top");
+    return problem.op().balance(problem.steady(), 0., true).sides.at("top");
   };
   for (const std::string zone : {"everywhere", "cracks: 1"})
     {
@@ -253,9 +245,7 @@ TEST(Exchange, equals_bonds_alone_inside)
   const Settings   shape = cells("20, 20", "1, 1");
   const Problem<2> exchange(shape + Settings{{"Coupling/Zone", "everywhere"}}, ModelKind::coupled);
   const Problem<2> alone(shape + Settings{{"Peridynamics/Boundary treatment", "none"}});
-  Vector           a = exchange.vector(), b = alone.vector();
-  exchange.op().apply(a, exchange.values(bumpy<2>));
-  alone.op().apply(b, alone.values(bumpy<2>));
+  Vector a = exchange.product(exchange.values(bumpy<2>)), b = alone.product(alone.values(bumpy<2>));
   const auto inside = [](const dealii::Point<2> &p) {
     return std::max(std::abs(p[0] - 0.5), std::abs(p[1] - 0.5)) < 0.3;
   };
@@ -297,7 +287,6 @@ TEST(Exchange, layers_and_graded_materials)
                                          {"Coupling/Zone", "everywhere"}},
                               ModelKind::coupled);
       const double     error = patch_error(graded);
-      std::cout << "graded " << n << ' ' << error << std::endl;
       if (last > 0.)
         {
           EXPECT_LT(error, last / 3.2);
@@ -334,7 +323,6 @@ TEST(Couplings, blending_is_symmetric_but_not_exact)
                    {"Coupling/Overlap", overlap}},
         ModelKind::coupled);
       const CouplingCertificate found = examine_coupling(*problem.fem, true);
-      std::cout << "blending, overlap " << overlap << ": " << found.linear << std::endl;
       EXPECT_LT(found.asymmetry, 1e-14);
       EXPECT_GT(found.linear, 1e-5);
       EXPECT_LT(found.linear, 2e-2);
@@ -383,7 +371,6 @@ TEST(Exchange, higher_patches_converge)
                                    patch<2>("x^3 - y^2*x + y^3", "-4*x - 6*y", zone),
                                  ModelKind::coupled);
           const double     a = patch_error(quadratic), b = patch_error(cubic);
-          std::cout << name << ' ' << n << ": " << a << ' ' << b << std::endl;
           if (last_quadratic > 0.)
             {
               EXPECT_LT(a, 0.5 * last_quadratic) << name;

@@ -100,7 +100,10 @@ namespace PeriDeal
     };
     check("2*xx", {"column 3", "unknown name 'xx'"});
     check("1 + sqr(x)", {"column 5", "unknown name 'sqr'; did you mean 'sqrt'?"});
-    check("2*T", {"column 3", "'T': the temperature is available in formulas of the material only", "x, y, z, t"});
+    check("2*T",
+          {"column 3",
+           "'T': the temperature is available in formulas of the material only",
+           "x, y, z, t"});
     check("sin(", {"ends too early"});
     check("(1+2", {"closing parenthesis is missing"});
     check("1+2)", {"column 4", "unexpected parenthesis ')'"});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/solvers/linear_solver.h>
 
 #include "operator_test_tools.h"
 #include "scene_test_tools.h"
@@ -23,28 +22,28 @@ namespace PeriDeal
         dirichlet += (s > 0 ? ";" : "") + box_side_names()[s] + ": " + formula[dim];
       const Problem<dim> problem(settings + Settings{{"Boundary conditions/Dirichlet", dirichlet}},
                                  ModelKind::finite_elements);
-      Vector             u = problem.vector();
-      solve_steady(problem.op(), u, 0., 1e-14, 1000);
-      const Vector exact = problem.values([](const Point<dim> &p) {
+      const Vector       u     = problem.steady(1e-14);
+      const Vector       exact = problem.values([](const Point<dim> &p) {
         return 1. + 2. * p[0] - (dim > 1 ? p[dim > 1] : 0.) + (dim > 2 ? 3. * p[dim - 1] : 0.);
       });
       EXPECT_LT(largest_difference(u, exact), 1e-12) << dim;
     }
 
 
-    /** Conservation, symmetry, definiteness without Dirichlet sides; returns the matrix. */
     template <int dim>
-    dealii::FullMatrix<double> checked_matrix(const Settings &settings, const std::string &what)
+    void conserves(const Settings &settings, const std::string &what)
     {
-      const Problem<dim>    problem(settings, ModelKind::finite_elements);
-      const DenseProperties matrix(problem.op());
-      EXPECT_LT(matrix.asymmetry, 1e-14) << what;
-      EXPECT_GT(matrix.smallest, -1e-12 * matrix.largest) << what;
-      Vector one = problem.vector(), y = problem.vector();
-      one = 1.;
-      problem.op().apply(y, one);
-      EXPECT_LT(y.linfty_norm(), 1e-13 * matrix.entry) << what;
-      return dense(problem.op());
+      expect_conservation(Problem<dim>(settings, ModelKind::finite_elements), what);
+    }
+
+
+    /** The steady flow through a body from its bottom, at 0, to its top, at 1. */
+    double flow_upwards(const Settings &more)
+    {
+      const Problem<2> problem(Settings{{"Boundary conditions/Dirichlet", "bottom: 0 ; top: 1"}} +
+                                 more,
+                               ModelKind::finite_elements);
+      return problem.op().balance(problem.steady(1e-13), 0., true).sides.at("top");
     }
   } // namespace
 
@@ -67,23 +66,20 @@ namespace PeriDeal
         const Settings   settings{{"Domain/Cells", "8, 8"},
                                 {"Cracks/Segments", "-1," + height + " ; 2," + height}};
         const Problem<2> problem(settings, ModelKind::finite_elements);
-        Vector above = problem.values([](const auto &p) { return p[1] > 0.49 ? 1. : 0.; }),
-               y     = problem.vector();
-        problem.op().apply(y, above);
-        EXPECT_LT(y.linfty_norm(), 1e-14) << height;
-        checked_matrix<2>(settings, height);
+        const Vector above = problem.values([](const auto &p) { return p[1] > 0.49 ? 1. : 0.; });
+        EXPECT_LT(problem.product(above).linfty_norm(), 1e-14) << height;
+        conserves<2>(settings, height);
         unsigned int n_cut = 0;
         for (const auto &cell : problem.handler.active_cell_iterators())
           if (cell->is_locally_owned() && problem.fem->cut_cells()[cell->active_cell_index()])
             ++n_cut;
-        EXPECT_EQ(dealii::Utilities::MPI::sum(n_cut, MPI_COMM_WORLD), 8u);
+        EXPECT_EQ(sum_of_all(n_cut), 8u);
       }
-    checked_matrix<3>({{"Domain/Cells", "4, 4, 4"},
-                       {"Cracks/Polygons", "0.1,0.1,0.4 ; 0.8,0.1,0.4 ; 0.8,0.8,0.6 ; 0.1,0.8,0.6"},
-                       {"Peridynamics/Surface correction", "crack scaling"}},
-                      "3D");
-    checked_matrix<2>({{"Domain/Cells", "8, 8"}, {"Cracks/Segments", "0.2,0.3 ; 0.7,0.6"}},
-                      "oblique");
+    conserves<3>({{"Domain/Cells", "4, 4, 4"},
+                  {"Cracks/Polygons", "0.1,0.1,0.4 ; 0.8,0.1,0.4 ; 0.8,0.8,0.6 ; 0.1,0.8,0.6"},
+                  {"Peridynamics/Surface correction", "crack scaling"}},
+                 "3D");
+    conserves<2>({{"Domain/Cells", "8, 8"}, {"Cracks/Segments", "0.2,0.3 ; 0.7,0.6"}}, "oblique");
   }
 
 
@@ -93,22 +89,18 @@ namespace PeriDeal
     // h) + (h/kappa + 1/H) of the row of cut cells.
     for (const std::string given : {"Contact conductance", "Transmission"})
       {
-        const double     H = 3.;
-        const Problem<2> problem({{"Domain/Cells", "9, 9"},
-                                  {"Material/Conductivity", "2"},
-                                  {"Cracks/Segments", "-1,0.48 ; 2,0.48"},
-                                  {"Cracks/" + given, given == "Transmission" ? "0.4" : "3"},
-                                  {"Boundary conditions/Dirichlet", "bottom: 0 ; top: 1"}},
-                                 ModelKind::finite_elements);
-        Vector           u = problem.vector();
-        solve_steady(problem.op(), u, 0., 1e-13, 1000);
-        const double flux = problem.op().balance(u, 0., true).sides.at("top");
+        const double H = 3.;
+        const double flux =
+          flow_upwards({{"Domain/Cells", "9, 9"},
+                        {"Material/Conductivity", "2"},
+                        {"Cracks/Segments", "-1,0.48 ; 2,0.48"},
+                        {"Cracks/" + given, given == "Transmission" ? "0.4" : "3"}});
         EXPECT_LT(flux, 2.);
         EXPECT_GT(flux, 0.2);
+        // Pairs of Q1 squares: edges kappa/6 each side, diagonals kappa/3, all scaled by H h/(H h +
+        // kappa).
         if (given == "Contact conductance")
           {
-            // Pairs of Q1 squares: edges kappa/6 each side, diagonals kappa/3, all scaled by H h/(H
-            // h + kappa).
             EXPECT_NEAR(flux, 1. / (1. / 2. + 1. / H), 1e-10);
           }
       }
@@ -122,16 +114,11 @@ namespace PeriDeal
     const double kappa = 2., h = 1. / 9.;
     for (const double H : {0.4, 3., 40., 1e12})
       {
-        const Problem<2> problem({{"Domain/Cells", "9, 9"},
-                                  {"Material/Conductivity", "2"},
-                                  {"Cracks/Segments", "-1,0.48 ; 2,0.48"},
-                                  {"Cracks/Contact conductance", std::to_string(H)},
-                                  {"Peridynamics/Surface correction", "crack scaling"},
-                                  {"Boundary conditions/Dirichlet", "bottom: 0 ; top: 1"}},
-                                 ModelKind::finite_elements);
-        Vector           u = problem.vector();
-        solve_steady(problem.op(), u, 0., 1e-13, 1000);
-        const double flux = problem.op().balance(u, 0., true).sides.at("top");
+        const double flux = flow_upwards({{"Domain/Cells", "9, 9"},
+                                          {"Material/Conductivity", "2"},
+                                          {"Cracks/Segments", "-1,0.48 ; 2,0.48"},
+                                          {"Cracks/Contact conductance", std::to_string(H)},
+                                          {"Peridynamics/Surface correction", "crack scaling"}});
         // In units of kappa V: 2 expected, 1 of the whole cells, 1/6 of the pairs along the crack,
         // 5/6 t of those across it.
         const double t = H * h / (H * h + kappa), across = 5. / 6. * t,
@@ -149,17 +136,16 @@ namespace PeriDeal
     const Problem<2> halves(
       {{"Domain/Cells", "8, 8"}, {"Cracks/Mesh", "faces"}, {"Cracks/Segments", "-1,0.5 ; 2,0.5"}},
       ModelKind::finite_elements);
-    Vector above = halves.vector(), y = halves.vector();
+    Vector above = halves.vector();
     for (unsigned int i = 0; i < above.locally_owned_size(); ++i)
       above.local_element(i) = halves.sides[i][1] > 0.5 ? 1. : 0.;
     EXPECT_NEAR(above.l1_norm(), 45., 1e-12);
-    halves.op().apply(y, above);
-    EXPECT_LT(y.linfty_norm(), 1e-14);
+    EXPECT_LT(halves.product(above).linfty_norm(), 1e-14);
 
-    checked_matrix<3>({{"Domain/Cells", "4, 4, 4"},
-                       {"Cracks/Mesh", "faces"},
-                       {"Cracks/Polygons", "0,0.25,0.5 ; 0.75,0.25,0.5 ; 0.75,1,0.5 ; 0,1,0.5"}},
-                      "3D");
+    conserves<3>({{"Domain/Cells", "4, 4, 4"},
+                  {"Cracks/Mesh", "faces"},
+                  {"Cracks/Polygons", "0,0.25,0.5 ; 0.75,0.25,0.5 ; 0.75,1,0.5 ; 0,1,0.5"}},
+                 "3D");
   }
 
 
@@ -169,19 +155,18 @@ namespace PeriDeal
                               {"Cracks/Mesh", "removed"},
                               {"Cracks/Segments", "-1,0.47 ; 2,0.47"}},
                              ModelKind::finite_elements);
-    Vector           above = problem.values([](const auto &p) { return p[1] > 0.47 ? 1. : 0.; }),
-           y               = problem.vector();
-    problem.op().apply(y, above);
-    EXPECT_LT(y.linfty_norm(), 1e-14);
+    const Vector     above = problem.values([](const auto &p) { return p[1] > 0.47 ? 1. : 0.; });
+    EXPECT_LT(problem.product(above).linfty_norm(), 1e-14);
     // Two cracks, one in each of two neighbouring rows of cells: the nodes between have no cell
     // left.
-    const std::string message = SceneTests::message_of([] {
-      Problem<2>({{"Domain/Cells", "8, 8"},
-                  {"Cracks/Mesh", "removed"},
-                  {"Cracks/Segments", "-1,0.47 ; 2,0.47 ; -1,0.55 ; 2,0.55"}},
-                 ModelKind::finite_elements);
-    });
-    SceneTests::expect_parts(message, {"'Mesh'", "'Cracks'", "without any conducting cell"});
+    SceneTests::expect_error(
+      [] {
+        Problem<2>({{"Domain/Cells", "8, 8"},
+                    {"Cracks/Mesh", "removed"},
+                    {"Cracks/Segments", "-1,0.47 ; 2,0.47 ; -1,0.55 ; 2,0.55"}},
+                   ModelKind::finite_elements);
+      },
+      {"'Mesh'", "'Cracks'", "without any conducting cell"});
   }
 
 
@@ -205,21 +190,14 @@ namespace PeriDeal
 
   TEST(FiniteElements, material_that_is_not_positive_is_an_error)
   {
-    SceneTests::expect_parts(SceneTests::message_of([] {
-                               Problem<2>(
-                                 {{"Domain/Cells", "8, 8"}, {"Material/Conductivity", "x - 0.3"}},
-                                 ModelKind::finite_elements);
-                             }),
-                             {"'Conductivity'", "positive"});
-    SceneTests::expect_parts(
-      SceneTests::message_of([] {
-        Problem<2>({{"Domain/Cells", "8, 8"}, {"Material/Conductivity", "x - 0.3"}});
-      }),
-      {"'Conductivity'", "positive"});
-    SceneTests::expect_parts(
-      SceneTests::message_of([] {
-        Problem<2>({{"Domain/Cells", "8, 8"}, {"Material/Density", "x - 0.3"}});
-      }),
-      {"'Density'", "positive"});
+    for (const auto &[entry, model] : {std::pair("Conductivity", ModelKind::finite_elements),
+                                       std::pair("Conductivity", ModelKind::peridynamics),
+                                       std::pair("Density", ModelKind::peridynamics)})
+      {
+        const Settings wrong{{"Domain/Cells", "8, 8"},
+                             {std::string("Material/") + entry, "x - 0.3"}};
+        SceneTests::expect_error([&, kind = model] { Problem<2>(wrong, kind); },
+                                 {std::string("'") + entry + "'", "positive"});
+      }
   }
 } // namespace PeriDeal

@@ -61,7 +61,7 @@ namespace PeriDeal
                 }
               worst = std::max(worst, std::abs(sum / whole - 1.));
             }
-      return dealii::Utilities::MPI::max(worst, MPI_COMM_WORLD);
+      return max_of_all(worst);
     }
   } // namespace
 

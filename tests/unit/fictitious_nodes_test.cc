@@ -70,17 +70,16 @@ namespace PeriDeal
     template <int dim>
     double eigenvector_residual(const Problem<dim> &problem, Vector u, const double lambda)
     {
-      Vector r = problem.vector();
       problem.op().distribute(u, 0.);
-      problem.op().residual(r, u, 0.);
-      double largest = 0.;
+      const Vector r       = problem.residual(u);
+      double       largest = 0.;
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
         if (problem.op().diagonal().local_element(i) != 1. || r.local_element(i) != 0.)
           largest =
             std::max(largest,
                      std::abs(r.local_element(i) / problem.op().lumped_capacity().local_element(i) +
                               lambda * u.local_element(i)));
-      return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD) / lambda;
+      return max_of_all(largest) / lambda;
     }
 
 
@@ -100,7 +99,7 @@ namespace PeriDeal
     template <int dim>
     void expect_harmonics(const std::string &m, const double (&lambda)[3][3])
     {
-      const bool alone = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+      const bool alone = n_processes() == 1;
       for (const std::string placement : {"vertices", "cell centers"})
         for (unsigned int k = 0; k < 3; ++k)
           for (unsigned int n = 0; n < 3; ++n)
@@ -172,10 +171,9 @@ namespace PeriDeal
           Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"},
                    {"Boundary conditions/Dirichlet", "left: 1 ; right: 1 + 2*x"},
                    {"Boundary conditions/Symmetry", "bottom, top"}});
-        Vector u = problem.values(f), r = problem.vector();
+        Vector u = problem.values(f);
         problem.op().distribute(u, 0.);
-        problem.op().residual(r, u, 0.);
-        EXPECT_LT(r.linfty_norm(), 1e-13 * 20.) << placement;
+        EXPECT_LT(problem.residual(u).linfty_norm(), 1e-13 * 20.) << placement;
       }
   }
 
@@ -198,7 +196,7 @@ namespace PeriDeal
             const Point<2> p = problem.nodes->lattice()->position(fictitious[f].site);
             EXPECT_NEAR(outside[f], fictitious[f].side == 0 ? 3. : 5. + p[1], 1e-13);
           }
-        EXPECT_GT(dealii::Utilities::MPI::sum(fictitious.size(), MPI_COMM_WORLD), 100u);
+        EXPECT_GT(sum_of_all(fictitious.size()), 100u);
       }
   }
 
@@ -247,10 +245,8 @@ namespace PeriDeal
                    {"Cracks/Segments",
                     "-0.2,0.28 ; 0.2,0.28 ; 0.05,0.47 ; 0.2,0.72 ; -0.05,0.47 ; -0.2,0.72"}});
         const auto rates = [](const Problem<2> &problem) {
-          Vector u = problem.values(
-            [](const Point<2> &p) { return std::cos(3. * p[0]) + p[1] * (1. + p[0] * p[0]); });
-          Vector rate = problem.vector();
-          problem.op().apply(rate, u);
+          Vector rate = problem.product(problem.values(
+            [](const Point<2> &p) { return std::cos(3. * p[0]) + p[1] * (1. + p[0] * p[0]); }));
           for (unsigned int i = 0; i < rate.locally_owned_size(); ++i)
             rate.local_element(i) /= problem.op().lumped_capacity().local_element(i);
           return gathered(problem, rate);
@@ -279,12 +275,13 @@ namespace PeriDeal
 
   TEST(FictitiousNodes, body_narrower_than_the_horizon_is_an_error)
   {
-    const std::string message = SceneTests::message_of([] {
-      Problem<2>({{"Domain/Cells", "4, 20"},
-                  {"Domain/Upper corner", "1, 5"},
-                  {"Peridynamics/Horizon ratio", "6"},
-                  {"Boundary conditions/Symmetry", "left"}});
-    });
-    SceneTests::expect_parts(message, {"'Horizon'", "narrower"});
+    SceneTests::expect_error(
+      [] {
+        Problem<2>({{"Domain/Cells", "4, 20"},
+                    {"Domain/Upper corner", "1, 5"},
+                    {"Peridynamics/Horizon ratio", "6"},
+                    {"Boundary conditions/Symmetry", "left"}});
+      },
+      {"'Horizon'", "narrower"});
   }
 } // namespace PeriDeal

@@ -72,7 +72,7 @@ namespace PeriDeal
     /** A row of a table in Markdown. */
     inline void print_row(const std::string &name, const Row &row)
     {
-      if (with_tables() && dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      if (with_tables() && OperatorTests::this_process() == 0)
         std::printf("| %s | %.3e | %.3e | %.3f | %.3f | %.3f |\n",
                     name.c_str(),
                     row.error,

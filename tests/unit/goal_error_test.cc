@@ -182,7 +182,7 @@ namespace PeriDeal
             largest = std::max(largest, std::abs(w(dof) - f(p)));
             ++n;
           }
-      EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 20u);
+      EXPECT_GT(sum_of_all(n), 20u);
       EXPECT_LT(largest, 1e-11);
     }
   } // namespace
@@ -356,8 +356,7 @@ namespace PeriDeal
               sum_a += std::abs(share);
             for (const double share : b.cells)
               sum_b += std::abs(share);
-            EXPECT_NEAR(sum_a, dealii::Utilities::MPI::sum(sum_b, MPI_COMM_WORLD), 1e-10)
-              << test.name;
+            EXPECT_NEAR(sum_a, sum_of_all(sum_b), 1e-10) << test.name;
           }
         EXPECT_NEAR(field_of_one.root_mean_square(), field_of_all.root_mean_square(), 1e-10)
           << test.name;

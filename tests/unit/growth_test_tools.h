@@ -28,10 +28,9 @@ namespace PeriDeal
     template <int dim>
     Vector image(const Problem<dim> &problem)
     {
-      Vector u = problem.values(bumpy<dim>), y = problem.vector();
+      Vector u = problem.values(bumpy<dim>);
       problem.op().distribute(u, 0.);
-      problem.op().residual(y, u, 0.);
-      return y;
+      return problem.residual(u);
     }
 
 
@@ -94,7 +93,7 @@ namespace PeriDeal
             }
         }
       EXPECT_EQ(n_wrong, 0u) << what;
-      return dealii::Utilities::MPI::sum(n_broken, MPI_COMM_WORLD);
+      return sum_of_all(n_broken);
     }
   } // namespace OperatorTests
 } // namespace PeriDeal

@@ -129,8 +129,7 @@ namespace PeriDeal
     HeatLedger ledger;
     ledger.begin(2.);
     for (const double entered : {0., 3., 5., 4., 1., 1e-9})
-      ledger.see(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 ? entered : 0.,
-                 MPI_COMM_WORLD);
+      ledger.see(this_process() == 0 ? entered : 0., MPI_COMM_WORLD);
     ledger.keep({1e-9, 0.}, 0.1, 7., 1.);
     EXPECT_NEAR(ledger.most_moved(),
                 10.,

@@ -100,8 +100,7 @@ namespace PeriDeal
     Vector u = body.values([](const Point<2> &p) {
       return Tensor<1, 2>({1e-3 * p[0] * p[0], 0.});
     });
-    Vector v;
-    body.op().initialize_vector(v);
+    Vector v = body.vector();
     body.op().distribute(u, 0.);
     const double dt = options.time_step;
     Trip         told;
@@ -109,14 +108,7 @@ namespace PeriDeal
     std::string  end;
     for (; step < 5000 && end.empty(); ++step)
       {
-        try
-          {
-            stepper->advance(u, v, step * dt, (step + 1) * dt);
-          }
-        catch (const Diverged &diverged)
-          {
-            end = diverged.trip.monitor;
-          }
+        end = trip_of([&] { stepper->advance(u, v, step * dt, (step + 1) * dt); }).monitor;
         if (const Trip found = stepper->findings().take())
           {
             EXPECT_FALSE(told);

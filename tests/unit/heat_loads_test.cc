@@ -39,11 +39,6 @@ namespace PeriDeal
       HeatLoads<2>    loads;
     };
 
-    double sum(const double x)
-    {
-      return dealii::Utilities::MPI::sum(x, MPI_COMM_WORLD);
-    }
-
     double one(const Point<2> &)
     {
       return 1.;
@@ -62,7 +57,7 @@ namespace PeriDeal
     EXPECT_FALSE(source.loads.depends_on_time());
     EXPECT_NEAR(source.moment(0., one), 1., 1e-13);
     EXPECT_NEAR(source.moment(0., x_of), 2. / 3., 1e-13);
-    EXPECT_NEAR(sum(source.loads.sum()), 1., 1e-13);
+    EXPECT_NEAR(sum_of_all(source.loads.sum()), 1., 1e-13);
     const LoadedSquare sides(Settings{{"Boundary conditions/Flux", "top: 3*x"},
                                       {"Boundary conditions/Convection", "right: 2, 4 + y*t"}});
     EXPECT_TRUE(sides.loads.depends_on_time());
@@ -71,7 +66,7 @@ namespace PeriDeal
         const double ambient = 2. * (4. + 0.5 * t);
         EXPECT_NEAR(sides.moment(t, one), 1.5 + ambient, 1e-13) << t;
         EXPECT_NEAR(sides.moment(t, x_of), 1. + ambient, 1e-13) << t;
-        EXPECT_NEAR(sum(sides.loads.sum()), 1.5 + ambient, 1e-13) << t;
+        EXPECT_NEAR(sum_of_all(sides.loads.sum()), 1.5 + ambient, 1e-13) << t;
       }
     // Fluxes in regions and at points are totals; a part of a side counts its area.
     const LoadedSquare parts(Settings{
@@ -87,7 +82,7 @@ namespace PeriDeal
       Settings{{"Boundary conditions/Convection", "right: 2, 4 + y ; top: 3, 1"}});
     const Vector u = body.problem.values([](const Point<2> &p) { return 1. + p[0] + p[1]; });
     // Of h u: on the right 2 (2 + y), at the top 3 (2 + x).
-    EXPECT_NEAR(sum(body.loads.through_transfer(u)), -5. - 7.5, 1e-12);
+    EXPECT_NEAR(sum_of_all(body.loads.through_transfer(u)), -5. - 7.5, 1e-12);
     double                                       total = 0.;
     dealii::FullMatrix<double>                   matrix(4, 4);
     std::vector<dealii::types::global_dof_index> indices(4);
@@ -101,7 +96,7 @@ namespace PeriDeal
             for (unsigned int b = 0; b < 4; ++b)
               total += matrix(a, b) * u(indices[b]);
         }
-    EXPECT_NEAR(sum(total), 5. + 7.5, 1e-12);
+    EXPECT_NEAR(sum_of_all(total), 5. + 7.5, 1e-12);
   }
 
 
@@ -114,15 +109,17 @@ namespace PeriDeal
     const Vector       u = body.problem.values([](const Point<2> &p) { return 1. + p[0] + p[1]; });
     Balance            balance;
     body.loads.add_to(balance, u, 2.);
-    EXPECT_NEAR(sum(balance.sources), 1. + 2., 1e-12);
-    EXPECT_NEAR(sum(balance.sides["top"]), 1.5, 1e-12);
-    EXPECT_NEAR(sum(balance.sides["core"]), 10., 1e-12);
-    EXPECT_NEAR(sum(balance.sides["right"]), 2. * (4.5 - 2.5), 1e-12);
+    EXPECT_NEAR(sum_of_all(balance.sources), 1. + 2., 1e-12);
+    EXPECT_NEAR(sum_of_all(balance.sides["top"]), 1.5, 1e-12);
+    EXPECT_NEAR(sum_of_all(balance.sides["core"]), 10., 1e-12);
+    EXPECT_NEAR(sum_of_all(balance.sides["right"]), 2. * (4.5 - 2.5), 1e-12);
     // All that enters: f minus what convection takes away.
     double all = balance.sources;
     for (const auto &[name, value] : balance.sides)
       all += value;
     body.loads.at(2.);
-    EXPECT_NEAR(sum(body.loads.sum() + body.loads.through_transfer(u)), sum(all), 1e-12);
+    EXPECT_NEAR(sum_of_all(body.loads.sum() + body.loads.through_transfer(u)),
+                sum_of_all(all),
+                1e-12);
   }
 } // namespace PeriDeal

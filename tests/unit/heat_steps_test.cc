@@ -55,7 +55,7 @@ namespace PeriDeal
       for (unsigned int k = 0; k < n_calls; ++k)
         method->advance(u, t_end * k / n_calls, t_end * (k + 1) / n_calls);
       const double after   = problem.op().balance(u, t_end, false).content;
-      const double entered = dealii::Utilities::MPI::sum(method->entered(), MPI_COMM_WORLD);
+      const double entered = sum_of_all(method->entered());
       return {entered, after - before, std::max(std::abs(after), std::abs(entered))};
     }
 

@@ -6,12 +6,7 @@
 #include <perideal/mesh/cell_paths.h>
 #include <perideal/operators/coupling/mesh_exchange.h>
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iomanip>
 #include <map>
 #include <random>
 
@@ -34,6 +29,14 @@ namespace
 
 
   template <int dim>
+  double kept_share(const Problem<dim> &problem)
+  {
+    return dynamic_cast<const MeshExchange<dim, ConductingBonds<dim>> &>(problem.fem->bonds())
+      .kept_share();
+  }
+
+
+  template <int dim>
   void check(const std::string &mesh, const std::string &horizon, const double least_kept)
   {
     for (const std::string zone : {"everywhere",
@@ -43,19 +46,12 @@ namespace
       {
         const Problem<dim>        problem(on<dim>(mesh, horizon, zone), ModelKind::coupled);
         const CouplingCertificate found = examine_coupling(*problem.fem, true);
-        const double              kept =
-          dynamic_cast<const MeshExchange<dim, ConductingBonds<dim>> &>(problem.fem->bonds())
-            .kept_share();
         EXPECT_LT(found.linear, 1e-12) << zone;
         EXPECT_LT(found.asymmetry, 1e-13) << zone;
         EXPECT_GT(found.lowest_remainder, -1e-13) << zone;
         EXPECT_GT(found.lowest_eigenvalue, 0.) << zone;
         EXPECT_GT(problem.fem->size().bonds, 0u) << zone;
-        EXPECT_GT(kept, least_kept) << zone;
-        if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-          std::cout << dim << "D, " << zone << ": linear " << found.linear << ", quadratic "
-                    << found.quadratic << ", cubic " << found.cubic << ", kept " << kept
-                    << ", cell " << found.lowest_remainder << std::endl;
+        EXPECT_GT(kept_share(problem), least_kept) << zone;
         Vector one = problem.values([](const dealii::Point<dim> &) { return 1.; }), image = one;
         problem.fem->multiply(image, one);
         EXPECT_LT(image.linfty_norm() / problem.fem->diagonal().linfty_norm(), 1e-13) << zone;
@@ -180,10 +176,7 @@ namespace
         }
     EXPECT_LT(worst, 1e-10);
     EXPECT_GT(n_leaving, 0u);
-    const double share = 1. - paths.n_followed_plainly() / static_cast<double>(n_paths);
-    std::cout << dim << "D: " << n_paths << " paths, " << n_leaving << " leave, walked " << share
-              << ", difference " << worst << std::endl;
-    return share;
+    return 1. - paths.n_followed_plainly() / static_cast<double>(n_paths);
   }
 } // namespace
 
@@ -231,8 +224,8 @@ TEST(MeshExchange, calibrated_over_the_zone)
                (4. * nodes.volume(i));
       n += 1.;
     }
-  sum = dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD);
-  n   = dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD);
+  sum = sum_of_all(sum);
+  n   = sum_of_all(n);
   EXPECT_GT(n, 20.);
   EXPECT_NEAR(sum / n, 1., 1e-12);
 }
@@ -257,20 +250,17 @@ namespace
   /** The same on all processes together and on one alone. */
   void compare_processes(const Settings &settings)
   {
-    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+    if (n_processes() == 1)
       return;
     const Problem<2> all(settings, ModelKind::coupled),
       alone(settings, ModelKind::coupled, MPI_COMM_SELF);
-    Vector a = all.vector(), b = alone.vector();
-    all.fem->apply(a, all.values(bumpy<2>));
-    alone.fem->apply(b, alone.values(bumpy<2>));
-    EXPECT_LT(difference(all, a, alone, b), 1e-13 * alone.op().diagonal().linfty_norm());
+    EXPECT_LT(difference(all,
+                         all.product(all.values(bumpy<2>)),
+                         alone,
+                         alone.product(alone.values(bumpy<2>))),
+              1e-13 * alone.op().diagonal().linfty_norm());
     EXPECT_EQ(all.op().size().bonds, alone.op().size().bonds);
-    const auto kept = [](const Problem<2> &problem) {
-      return dynamic_cast<const MeshExchange<2, ConductingBonds<2>> &>(problem.fem->bonds())
-        .kept_share();
-    };
-    EXPECT_NEAR(kept(all), kept(alone), 1e-13);
+    EXPECT_NEAR(kept_share(all), kept_share(alone), 1e-13);
   }
 
 
@@ -280,29 +270,15 @@ namespace
    */
   std::string turned_mesh(const double degrees, const unsigned int n_digits)
   {
-    constexpr unsigned int n    = 20;
-    const std::string      name = (std::filesystem::temp_directory_path() /
-                              ("perideal_" + std::to_string(getpid()) + "_turned.msh"))
-                               .string();
-    std::ofstream file(name);
-    file << std::fixed << std::setprecision(n_digits)
-         << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n"
-         << (n + 1) * (n + 1) << '\n';
     const double c = std::cos(degrees * std::acos(-1.) / 180.), s = std::sqrt(1. - c * c);
-    for (unsigned int k = 0; k < (n + 1) * (n + 1); ++k)
-      {
-        const double x = 5. * (k % (n + 1)) / n, y = 5. * (k / (n + 1)) / n;
-        file << k + 1 << ' ' << c * x - s * y << ' ' << s * x + c * y << " 0\n";
-      }
-    file << "$EndNodes\n$Elements\n" << n * n << '\n';
-    for (unsigned int k = 0; k < n * n; ++k)
-      {
-        const unsigned int v = 1 + k % n + (n + 1) * (k / n);
-        file << k + 1 << " 3 2 1 1 " << v << ' ' << v + 1 << ' ' << v + n + 2 << ' ' << v + n + 1
-             << '\n';
-      }
-    file << "$EndElements\n";
-    return name;
+    return lattice_mesh<2>(
+      "turned",
+      20,
+      [&](const std::array<unsigned int, 3> &at) {
+        const double x = 5. * at[0] / 20., y = 5. * at[1] / 20.;
+        return std::array<double, 3>{c * x - s * y, s * x + c * y, 0.};
+      },
+      n_digits);
   }
 } // namespace
 

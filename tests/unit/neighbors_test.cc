@@ -159,7 +159,7 @@ TEST(Neighbors, outside_come_after_the_nodes)
                            Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"}});
   const Neighbors<2> &neighbors = problem.bonds->diffusion_bonds().neighbors();
   const unsigned int  n_local   = problem.nodes->n_local();
-  ASSERT_GT(dealii::Utilities::MPI::sum(neighbors.outside().size(), MPI_COMM_WORLD), 0u);
+  ASSERT_GT(sum_of_all(neighbors.outside().size()), 0u);
   for (unsigned int f = 0; f < neighbors.outside().size(); ++f)
     {
       const FictitiousNode<2> &node = neighbors.outside()[f];
@@ -174,5 +174,5 @@ TEST(Neighbors, outside_come_after_the_nodes)
   unsigned int n_bonds = 0;
   for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
     neighbors.for_each(i, [&](const unsigned int j, const double) { n_bonds += j >= n_local; });
-  EXPECT_GT(dealii::Utilities::MPI::sum(n_bonds, MPI_COMM_WORLD), 0u);
+  EXPECT_GT(sum_of_all(n_bonds), 0u);
 }

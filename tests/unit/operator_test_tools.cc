@@ -4,6 +4,7 @@
 #include "operator_test_tools.h"
 
 #include <perideal/problems/computable.h>
+#include <perideal/solvers/linear_solver.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -106,6 +107,34 @@ namespace PeriDeal
 
 
     template <int dim>
+    Vector Problem<dim>::product(const Vector &x) const
+    {
+      Vector y = vector();
+      op().apply(y, x);
+      return y;
+    }
+
+
+    template <int dim>
+    Vector Problem<dim>::residual(const Vector &u, const double t) const
+    {
+      Vector r = vector();
+      op().residual(r, u, t);
+      return r;
+    }
+
+
+    template <int dim>
+    Vector Problem<dim>::steady(const double tolerance, Vector u) const
+    {
+      if (u.size() == 0)
+        u = vector();
+      solve_steady(op(), u, 0., tolerance, 2000);
+      return u;
+    }
+
+
+    template <int dim>
     void Problem<dim>::find_positions()
     {
       const auto               &fe    = handler.get_fe();
@@ -134,20 +163,6 @@ namespace PeriDeal
       for (unsigned int i = 0; i < count.size(); ++i)
         sides[i] = positions[i] + 1e-3 * (sides[i] / count[i] - positions[i]);
     }
-
-
-    namespace
-    {
-      /** Place of an unknown, rounded, as a key. */
-      template <int dim>
-      std::array<long, dim> place(const dealii::Point<dim> &p)
-      {
-        std::array<long, dim> key;
-        for (unsigned int d = 0; d < dim; ++d)
-          key[d] = std::lround(p[d] * 1e7);
-        return key;
-      }
-    } // namespace
 
 
     template <int dim>
@@ -191,6 +206,12 @@ namespace PeriDeal
       Vector d(a);
       d -= b;
       return d.linfty_norm();
+    }
+
+
+    double relative_difference(const Vector &a, const Vector &b)
+    {
+      return largest_difference(a, b) / b.linfty_norm();
     }
 
 

@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -60,6 +61,15 @@ namespace PeriDeal
 
       Vector vector() const;
 
+      /** K x of the free unknowns. */
+      Vector product(const Vector &x) const;
+
+      /** f - K u. */
+      Vector residual(const Vector &u, const double t = 0.) const;
+
+      /** The steady solution, from a field on, zero unless given. */
+      Vector steady(const double tolerance = 1e-12, Vector u = Vector()) const;
+
       /** A vector with the values of a function at the owned unknowns. */
       template <typename Function>
       Vector values(const Function &f) const
@@ -85,7 +95,18 @@ namespace PeriDeal
     };
 
 
-    /** All values of a vector by place, rounded, on every process of its communicator. */
+    /** Place of an unknown, rounded, as a key. */
+    template <int dim>
+    std::array<long, dim> place(const dealii::Point<dim> &p)
+    {
+      std::array<long, dim> key;
+      for (unsigned int d = 0; d < dim; ++d)
+        key[d] = std::lround(p[d] * 1e7);
+      return key;
+    }
+
+
+    /** All values of a vector by place, on every process of its communicator. */
     template <int dim>
     std::map<std::array<long, dim>, double> gathered(const Problem<dim> &problem, const Vector &v);
 
@@ -102,6 +123,10 @@ namespace PeriDeal
 
 
     double largest_difference(const Vector &a, const Vector &b);
+
+
+    /** The same, over the largest of the second. */
+    double relative_difference(const Vector &a, const Vector &b);
 
 
     /** A field without any symmetry. */
@@ -131,9 +156,59 @@ namespace PeriDeal
     };
 
 
+    /** Areas of the sides that nodes have, by id, and their volume, at last. Collective. */
+    template <int dim>
+    std::vector<double> measures_of(const Nodes<dim> &nodes)
+    {
+      std::vector<double> sums(257, 0.), all(257);
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        sums[256] += nodes.volume(i);
+      for (const BoundaryShare &share : nodes.boundary_shares())
+        sums[share.id] += share.area;
+      dealii::Utilities::MPI::sum(sums, MPI_COMM_WORLD, all);
+      return all;
+    }
+
+
+    /** Of a body without prescribed values: what K conserves, that it is symmetric, positive. */
+    template <int dim>
+    void expect_conservation(const Problem<dim> &problem,
+                             const std::string  &what,
+                             const double        of_one = 1e-13)
+    {
+      const Vector y = problem.product(problem.values(bumpy<dim>));
+      EXPECT_NEAR(y.mean_value() * y.size(), 0., 1e-12 * y.l1_norm()) << what;
+      const DenseProperties matrix(problem.op());
+      EXPECT_LT(matrix.asymmetry, 1e-14) << what;
+      EXPECT_GT(matrix.smallest, -1e-12 * matrix.largest) << what;
+      const Vector one = problem.values([](const auto &) { return 1.; });
+      EXPECT_LT(problem.product(one).linfty_norm(), of_one * matrix.entry) << what;
+    }
+
+
     inline unsigned int n_processes()
     {
       return dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    }
+
+
+    inline unsigned int this_process()
+    {
+      return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+    }
+
+
+    template <typename Number>
+    Number sum_of_all(const Number &own)
+    {
+      return dealii::Utilities::MPI::sum(own, MPI_COMM_WORLD);
+    }
+
+
+    template <typename Number>
+    Number max_of_all(const Number &own)
+    {
+      return dealii::Utilities::MPI::max(own, MPI_COMM_WORLD);
     }
   } // namespace OperatorTests
 } // namespace PeriDeal

@@ -46,6 +46,16 @@ namespace OutputTests
       return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
     }
 
+    /** What the first process does or expects while the others wait. */
+    template <typename Action>
+    void on_first(const Action &action) const
+    {
+      MPI_Barrier(MPI_COMM_WORLD);
+      if (is_first())
+        action();
+      MPI_Barrier(MPI_COMM_WORLD);
+    }
+
     bool there_is(const std::string &name) const
     {
       return fs::exists(place + "/" + name);

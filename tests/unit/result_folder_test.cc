@@ -3,8 +3,6 @@
 
 #include <perideal/output/tables.h>
 
-#include <fstream>
-
 #include "output_test_tools.h"
 #include "scene_test_tools.h"
 
@@ -38,17 +36,15 @@ namespace
   TEST_F(ResultFolderTest, a_run_replaces_what_the_one_before_wrote_and_no_more)
   {
     run({"a.csv", "b.csv"});
-    if (is_first())
-      std::ofstream(place + "/mine.txt") << "mine";
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] { replace("mine.txt", "mine"); });
     run({"b.csv"});
-    if (!is_first())
-      return;
-    EXPECT_FALSE(there_is("a.csv"));
-    EXPECT_EQ(content("b.csv"), "of b.csv");
-    EXPECT_EQ(content("mine.txt"), "mine");
-    EXPECT_FALSE(there_is(".perideal/lock"));
-    EXPECT_FALSE(there_is(".perideal/previous"));
+    on_first([&] {
+      EXPECT_FALSE(there_is("a.csv"));
+      EXPECT_EQ(content("b.csv"), "of b.csv");
+      EXPECT_EQ(content("mine.txt"), "mine");
+      EXPECT_FALSE(there_is(".perideal/lock"));
+      EXPECT_FALSE(there_is(".perideal/previous"));
+    });
   }
 
 
@@ -59,53 +55,45 @@ namespace
       ResultFolder folder(place, "scene.prm", {"a.csv", "b.csv"}, MPI_COMM_WORLD);
       folder.write("a.csv", "new");
       folder.write("b.csv", "new");
-      if (is_first())
-        {
-          EXPECT_EQ(content("a.csv"), "new");
-          EXPECT_FALSE(there_is("fields/a_0000.h5"));
-        }
+      on_first([&] {
+        EXPECT_EQ(content("a.csv"), "new");
+        EXPECT_FALSE(there_is("fields/a_0000.h5"));
+      });
     }
-    if (!is_first())
-      return;
-    EXPECT_EQ(content("a.csv"), "of a.csv");
-    EXPECT_EQ(content("fields/a_0000.h5"), "of fields/a_0000.h5");
-    EXPECT_FALSE(there_is("b.csv"));
+    on_first([&] {
+      EXPECT_EQ(content("a.csv"), "of a.csv");
+      EXPECT_EQ(content("fields/a_0000.h5"), "of fields/a_0000.h5");
+      EXPECT_FALSE(there_is("b.csv"));
+    });
   }
 
 
   TEST_F(ResultFolderTest, a_killed_run_leaves_the_results_before_it)
   {
     run({"a.csv"});
-    if (is_first()) // what a run that was killed before it had results leaves
-      {
-        fs::create_directories(place + "/.perideal/previous");
-        fs::rename(place + "/a.csv", place + "/.perideal/previous/a.csv");
-        fs::rename(place + "/.perideal/files", place + "/.perideal/previous/files");
-        std::ofstream(place + "/.perideal/files") << "b.csv\n";
-        std::ofstream(place + "/b.csv") << "half";
-        std::ofstream(place + "/.perideal/lock") << "process 1 on nowhere\n";
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] { // what a run that was killed before it had results leaves
+      fs::create_directories(place + "/.perideal/previous");
+      fs::rename(place + "/a.csv", place + "/.perideal/previous/a.csv");
+      fs::rename(place + "/.perideal/files", place + "/.perideal/previous/files");
+      replace(".perideal/files", "b.csv\n");
+      replace("b.csv", "half");
+      replace(".perideal/lock", "process 1 on nowhere\n");
+    });
     EXPECT_EQ(refusal({"b.csv"}), ""); // and ends without results
-    if (!is_first())
-      return;
-    EXPECT_EQ(content("a.csv"), "of a.csv");
-    EXPECT_FALSE(there_is("b.csv"));
+    on_first([&] {
+      EXPECT_EQ(content("a.csv"), "of a.csv");
+      EXPECT_FALSE(there_is("b.csv"));
+    });
   }
 
 
   TEST_F(ResultFolderTest, unfinished_files_of_a_killed_run_stop_nobody)
   {
     run({"fields/peridynamics_0000.h5"});
-    if (is_first())
-      std::ofstream(place + "/fields/peridynamics_0000.h5.part") << "half";
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] { replace("fields/peridynamics_0000.h5.part", "half"); });
     EXPECT_EQ(refusal({"fields/peridynamics_*"}), "");
     run({"fields/peridynamics_0000.h5"});
-    if (is_first())
-      {
-        EXPECT_FALSE(there_is("fields/peridynamics_0000.h5.part"));
-      }
+    on_first([&] { EXPECT_FALSE(there_is("fields/peridynamics_0000.h5.part")); });
   }
 
 
@@ -113,30 +101,24 @@ namespace
   {
     run({"a.csv", "b.csv"});
     const std::string own = place + "/.perideal/", previous = own + "previous/";
-    if (is_first()) // while it set the results aside: one of two is there, and no mark
-      {
-        fs::create_directories(previous);
-        fs::rename(place + "/a.csv", previous + "a.csv");
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] { // while it set the results aside: one of two is there, and no mark
+      fs::create_directories(previous);
+      fs::rename(place + "/a.csv", previous + "a.csv");
+    });
     EXPECT_EQ(refusal({"b.csv"}), "");
-    if (is_first())
-      {
-        EXPECT_EQ(content("a.csv") + content("b.csv"), "of a.csvof b.csv");
-        // while it put them back: the list names all, the mark is still there, one of two is back
-        fs::create_directories(previous);
-        fs::rename(place + "/b.csv", previous + "b.csv");
-        fs::copy_file(own + "files", previous + "files");
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] {
+      EXPECT_EQ(content("a.csv") + content("b.csv"), "of a.csvof b.csv");
+      // while it put them back: the list names all, the mark is still there, one of two is back
+      fs::create_directories(previous);
+      fs::rename(place + "/b.csv", previous + "b.csv");
+      fs::copy_file(own + "files", previous + "files");
+    });
     EXPECT_EQ(refusal({"b.csv"}), "");
-    if (is_first())
-      {
-        EXPECT_EQ(content("a.csv") + content("b.csv"), "of a.csvof b.csv");
-        fs::remove(place + "/fields"); // an empty folder that somebody has taken away
-        std::ofstream(place + "/totals.csv") << "mine";
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] {
+      EXPECT_EQ(content("a.csv") + content("b.csv"), "of a.csvof b.csv");
+      fs::remove(place + "/fields"); // an empty folder that somebody has taken away
+      replace("totals.csv", "mine");
+    });
     EXPECT_NE(refusal({"totals.csv"}), "");
     EXPECT_EQ(refusal({"a.csv", "b.csv"}), "") << "the list is kept";
   }
@@ -144,35 +126,30 @@ namespace
 
   TEST_F(ResultFolderTest, files_of_another_origin_are_refused_by_name)
   {
-    if (is_first())
-      {
-        fs::create_directories(place + "/fields");
-        std::ofstream(place + "/totals.csv") << "mine";
-        std::ofstream(place + "/fields/peridynamics_0003.h5") << "mine";
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
-    EXPECT_NE(refusal({"scene.prm", "totals.csv"}).find("'totals.csv'"), std::string::npos);
-    EXPECT_NE(refusal({"fields/peridynamics_*"}).find("peridynamics_0003.h5"), std::string::npos);
+    on_first([&] {
+      fs::create_directories(place + "/fields");
+      replace("totals.csv", "mine");
+      replace("fields/peridynamics_0003.h5", "mine");
+    });
+    SceneTests::expect_parts(refusal({"scene.prm", "totals.csv"}), {"'totals.csv'"});
+    SceneTests::expect_parts(refusal({"fields/peridynamics_*"}), {"peridynamics_0003.h5"});
     EXPECT_EQ(refusal({"probes.csv", "fields/coupled_*"}), "");
-    if (!is_first())
-      return;
-    EXPECT_EQ(content("totals.csv"), "mine");
-    EXPECT_FALSE(there_is(".perideal"));
+    on_first([&] {
+      EXPECT_EQ(content("totals.csv"), "mine");
+      EXPECT_FALSE(there_is(".perideal"));
+    });
   }
 
 
   TEST_F(ResultFolderTest, a_folder_has_one_run_at_a_time)
   {
     const ResultFolder folder(place, "scene.prm", {"a.csv"}, MPI_COMM_WORLD);
-    const std::string  message = refusal({"a.csv"});
-    EXPECT_NE(message.find("another run"), std::string::npos) << message;
-    EXPECT_NE(message.find("process "), std::string::npos) << message;
-    if (is_first())
-      {
-        EXPECT_TRUE(there_is(".perideal/lock"));
-        FolderLock other;
-        EXPECT_EQ(other.take(place + "/.perideal/lock"), FolderLock::Outcome::taken);
-      }
+    SceneTests::expect_parts(refusal({"a.csv"}), {"another run", "process "});
+    on_first([&] {
+      EXPECT_TRUE(there_is(".perideal/lock"));
+      FolderLock other;
+      EXPECT_EQ(other.take(place + "/.perideal/lock"), FolderLock::Outcome::taken);
+    });
   }
 
 
@@ -192,12 +169,11 @@ namespace
     ResultFolder folder(place, "scene.prm", {"probes.csv"}, MPI_COMM_WORLD);
     PointTable   table(folder, "probes.csv", {{0.1, 0.2}, {0.3, 0.4}}, 2);
     table.add(0.5, "coupled", {1. / 3., 2.});
-    if (is_first())
-      {
-        EXPECT_EQ(content("probes.csv"),
-                  "time,model,x,y,value\n0.5,coupled,0.1,0.2,0.333333333333333\n"
-                  "0.5,coupled,0.3,0.4,2\n");
-      }
+    on_first([&] {
+      EXPECT_EQ(content("probes.csv"),
+                "time,model,x,y,value\n0.5,coupled,0.1,0.2,0.333333333333333\n"
+                "0.5,coupled,0.3,0.4,2\n");
+    });
     EXPECT_NO_THROW(folder.check());
   }
 } // namespace

@@ -49,10 +49,10 @@ namespace
         EXPECT_EQ(stop_reason(), "");
         std::raise(signal);
         EXPECT_TRUE(stop_requested());
-        EXPECT_NE(stop_reason().find(signal == SIGTERM ? "SIGTERM" :
-                                     signal == SIGINT  ? "SIGINT" :
-                                                         "SIGUSR1"),
-                  std::string::npos);
+        expect_parts(stop_reason(),
+                     {signal == SIGTERM ? "SIGTERM" :
+                      signal == SIGINT  ? "SIGINT" :
+                                          "SIGUSR1"});
         std::raise(SIGTERM); // the same request on another way
         EXPECT_TRUE(stop_requested());
       }
@@ -189,27 +189,18 @@ namespace
     }
     {
       Files files(place, RunMode::resume);
-      if (is_first())
-        {
-          EXPECT_NE(content("totals.csv").find("\n2.0"), std::string::npos) << "not touched yet";
-        }
-      MPI_Barrier(MPI_COMM_WORLD);
+      on_first([&] { expect_parts(content("totals.csv"), {"\n2.0"}); }); // not touched yet
       MemoryArchive archive(saved, MPI_COMM_WORLD);
       files.exchange(archive);
-      if (is_first())
-        {
-          EXPECT_EQ(content("totals.csv").find("\n2.0"), std::string::npos);
-          EXPECT_NE(content("summary.json").find("\"running\""), std::string::npos);
-        }
+      on_first([&] {
+        EXPECT_EQ(content("totals.csv").find("\n2.0"), std::string::npos);
+        expect_parts(content("summary.json"), {"\"running\""});
+      });
       for (const double t : {2., 3., 4.})
         files.write(t);
       files.summary.complete({{"time", 4.}});
     }
-    if (is_first())
-      {
-        EXPECT_EQ(all(), whole);
-      }
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] { EXPECT_EQ(all(), whole); });
 
     // tables that are shorter than they were, or gone
     const auto error = [&] {
@@ -219,18 +210,13 @@ namespace
         files.exchange(archive);
       });
     };
-    if (is_first())
-      replace("probes.csv", "time\n");
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] { replace("probes.csv", "time\n"); });
     expect_parts(error(), {"probes.csv", "5 bytes", "--overwrite"});
-    if (is_first())
-      fs::remove(place + "/totals.csv");
-    MPI_Barrier(MPI_COMM_WORLD);
+    on_first([&] { fs::remove(place + "/totals.csv"); });
     expect_parts(error(), {"totals.csv", "gone", "--overwrite"});
-    if (is_first())
-      {
-        EXPECT_EQ(content("probes.csv"), "time\n");
-        EXPECT_FALSE(there_is("totals.csv"));
-      }
+    on_first([&] {
+      EXPECT_EQ(content("probes.csv"), "time\n");
+      EXPECT_FALSE(there_is("totals.csv"));
+    });
   }
 } // namespace

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/diverged.h>
 #include <perideal/problems/computable.h>
 #include <perideal/scene/lists.h>
 
@@ -62,6 +63,30 @@ namespace PeriDeal
       for (const std::string &part : parts)
         EXPECT_NE(message.find(part), std::string::npos)
           << "'" << part << "' is missing in: '" << message << "'";
+    }
+
+
+    /** Why an action diverges; nothing if it does not. */
+    template <typename Action>
+    Trip trip_of(const Action &action)
+    {
+      try
+        {
+          action();
+        }
+      catch (const Diverged &diverged)
+        {
+          return diverged.trip;
+        }
+      return {};
+    }
+
+
+    /** What is wrong with what an action does has these parts. */
+    template <typename Action>
+    void expect_error(const Action &action, const std::vector<std::string> &parts)
+    {
+      expect_parts(message_of(action), parts);
     }
 
 

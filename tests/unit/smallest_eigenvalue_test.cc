@@ -6,11 +6,11 @@
 
 #include <perideal/base/smallest_eigenvalue.h>
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "dimensions.h"
 
 using namespace PeriDeal;
 using dealii::SymmetricTensor;
@@ -42,8 +42,7 @@ namespace
   /**
    * Isotropic, and isotropic but for round-off, at any size: what whole families of a lattice give.
    */
-  template <int dim>
-  void check_isotropic()
+  TEST_IN_DIMENSIONS(SmallestEigenvalue, of_isotropic_tensors, 2, 3)
   {
     for (const double size : {1e-60, 1., 1e60})
       {
@@ -62,8 +61,7 @@ namespace
 
 
   /** Bonds in one line, in any direction: singular to round-off; and with something weak across. */
-  template <int dim>
-  void check_lines()
+  TEST_IN_DIMENSIONS(SmallestEigenvalue, of_bonds_in_a_line, 2, 3)
   {
     for (unsigned int n = 0; n < 1000; ++n)
       {
@@ -73,20 +71,6 @@ namespace
         const auto   held = line + weak * dealii::unit_symmetric_tensor<dim>();
         ASSERT_NEAR(smallest_eigenvalue(held) / weak, 1., 1e-8) << held;
       }
-  }
-
-
-  TEST(SmallestEigenvalue, of_isotropic_tensors)
-  {
-    check_isotropic<2>();
-    check_isotropic<3>();
-  }
-
-
-  TEST(SmallestEigenvalue, of_bonds_in_a_line)
-  {
-    check_lines<2>();
-    check_lines<3>();
   }
 
 
@@ -104,9 +88,8 @@ namespace
   {
     SymmetricTensor<2, 2> plane;
     EXPECT_EQ(smallest_eigenvalue(plane), 0.);
-    plane[0][0] = 2.;
-    plane[1][1] = 2.;
-    plane[0][1] = -1.;
+    plane[0][0] = plane[1][1] = 2.;
+    plane[0][1]               = -1.;
     EXPECT_DOUBLE_EQ(smallest_eigenvalue(plane), 1.);
 
     // (1 - x) (2 - x) (4 - x)

@@ -101,8 +101,7 @@ TEST(StateLatticeParts, moments_of_all_nodes_have_no_sum)
         sum += parts.nodes.volume(i) * moment;
         size += parts.nodes.volume(i) * moment.norm();
       }
-  EXPECT_LT(dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD).norm(),
-            1e-12 * dealii::Utilities::MPI::sum(size, MPI_COMM_WORLD));
+  EXPECT_LT(sum_of_all(sum).norm(), 1e-12 * sum_of_all(size));
 }
 
 

@@ -229,7 +229,6 @@ namespace
 } // namespace
 
 
-
 TEST(StencilKernel, OneDimension)
 {
   std::mt19937 random(1);
@@ -237,7 +236,6 @@ TEST(StencilKernel, OneDimension)
     for (const int n : {1, 7, 71, 613})
       check(ball(1, m + 0.5, false, random), 1, {{n, 1, 1}}, random);
 }
-
 
 
 TEST(StencilKernel, TwoDimensions)
@@ -252,7 +250,6 @@ TEST(StencilKernel, TwoDimensions)
 }
 
 
-
 TEST(StencilKernel, ThreeDimensions)
 {
   std::mt19937 random(3);
@@ -262,7 +259,6 @@ TEST(StencilKernel, ThreeDimensions)
   check(ball(3, 3.5, true, random), 3, {{71, 35, 5}}, random);
   check(ball(3, 10.5, true, random), 3, {{5, 3, 2}}, random);
 }
-
 
 
 TEST(StencilKernel, OddStencils)
@@ -279,7 +275,6 @@ TEST(StencilKernel, OddStencils)
             check(s, dim, {{41, dim > 1 ? 35 : 1, dim > 2 ? 4 : 1}}, random);
           }
 }
-
 
 
 TEST(StencilKernel, SumsOfTerms)
@@ -312,7 +307,6 @@ TEST(StencilKernel, SumsOfTerms)
 }
 
 
-
 TEST(StencilKernel, ReachMayDifferByCoordinate)
 {
   std::mt19937 random(4);
@@ -335,7 +329,6 @@ TEST(StencilKernel, ReachMayDifferByCoordinate)
 }
 
 
-
 TEST(StencilKernel, CountsBonds)
 {
   std::mt19937  random(5);
@@ -345,7 +338,6 @@ TEST(StencilKernel, CountsBonds)
   EXPECT_EQ(StencilKernel(3, s3.offsets, s3.weights).n_bonds(), 178u);
   EXPECT_LT(StencilKernel(3, s3.offsets, s3.weights).n_multiplications(), 30u);
 }
-
 
 
 TEST(StencilKernel, EmptyAndNegativeRuns)
@@ -373,7 +365,6 @@ TEST(StencilKernel, EmptyAndNegativeRuns)
 }
 
 
-
 TEST(StencilKernel, ThreadsDoNotInterfere)
 {
   std::mt19937        random(7);
@@ -391,7 +382,6 @@ TEST(StencilKernel, ThreadsDoNotInterfere)
 }
 
 
-
 TEST(StencilKernel, RefusesWrongInput)
 {
   const auto make = [](const unsigned int         dim,
@@ -406,7 +396,6 @@ TEST(StencilKernel, RefusesWrongInput)
   EXPECT_THROW(make(2, {{{1, 0, 0}}, {{1, 0, 0}}}, {1., 1.}), std::invalid_argument);
   EXPECT_THROW(make(2, {{{1, 0, 0}}}, {std::nan("")}), std::invalid_argument);
 }
-
 
 
 TEST(StencilKernel, NamesItsTarget)

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "dimensions.h"
 #include "elastic_test_tools.h"
 
 using namespace PeriDeal;
@@ -36,35 +37,23 @@ TEST(StretchEnergy, sums_and_ellipsoid)
 }
 
 
-namespace
+TEST_IN_DIMENSIONS(FamilyMoments, fourth_moments, 1, 2, 3)
 {
-  template <int dim>
-  void check_moments()
-  {
-    // Unit norm, even, a product is (n.m)^4.
-    dealii::Tensor<1, dim> a, b;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        a[d] = 1. + 0.7 * d;
-        b[d] = 2. - 1.3 * d;
-      }
-    const FourthMoments<dim> ma = fourth_moments(a), mb = fourth_moments(b);
-    EXPECT_EQ(fourth_moments(-a), ma);
-    EXPECT_NEAR(scalar_product<dim>(ma, ma), 1., 1e-14);
-    EXPECT_NEAR(scalar_product<dim>(ma, mb), std::pow(a * b / (a.norm() * b.norm()), 4), 1e-14);
-    // The mean of (n.m)^4 over all m is 3/(dim (dim + 2)), whatever n.
-    EXPECT_NEAR(scalar_product<dim>(ma, isotropic_fourth_moments<dim>()),
-                3. / (dim * (dim + 2.)),
-                1e-14);
-  }
-} // namespace
-
-
-TEST(FamilyMoments, fourth_moments)
-{
-  check_moments<1>();
-  check_moments<2>();
-  check_moments<3>();
+  // Unit norm, even, a product is (n.m)^4.
+  dealii::Tensor<1, dim> a, b;
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      a[d] = 1. + 0.7 * d;
+      b[d] = 2. - 1.3 * d;
+    }
+  const FourthMoments<dim> ma = fourth_moments(a), mb = fourth_moments(b);
+  EXPECT_EQ(fourth_moments(-a), ma);
+  EXPECT_NEAR(scalar_product<dim>(ma, ma), 1., 1e-14);
+  EXPECT_NEAR(scalar_product<dim>(ma, mb), std::pow(a * b / (a.norm() * b.norm()), 4), 1e-14);
+  // The mean of (n.m)^4 over all m is 3/(dim (dim + 2)), whatever n.
+  EXPECT_NEAR(scalar_product<dim>(ma, isotropic_fourth_moments<dim>()),
+              3. / (dim * (dim + 2.)),
+              1e-14);
 }
 
 
@@ -150,9 +139,8 @@ namespace
                 (found.stress[i] - inside).norm() > 1e-11 * inside.norm())
               wrong[i] = true;
         }
-    const unsigned int n_wrong = dealii::Utilities::MPI::sum(
-      static_cast<unsigned int>(std::count(wrong.begin(), wrong.end(), true)),
-      MPI_COMM_WORLD);
+    const unsigned int n_wrong =
+      sum_of_all(static_cast<unsigned int>(std::count(wrong.begin(), wrong.end(), true)));
     EXPECT_LE(n_wrong, body.states->bonds().corrections.n_left) << dim;
     EXPECT_LT(body.states->bonds().corrections.n_left,
               (dim == 3 ? 0.5 : 0.1) * body.nodes->n_global());

@@ -57,7 +57,7 @@ namespace
       for (const auto &part : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, local))
         for (const auto &[key, value] : part)
           all[key] += value;
-      n_loaded = dealii::Utilities::MPI::sum(n_loaded, MPI_COMM_WORLD);
+      n_loaded = sum_of_all(n_loaded);
       return all;
     };
     double     n_loaded, n_in_layer;

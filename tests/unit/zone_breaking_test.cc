@@ -3,12 +3,11 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/solvers/linear_solver.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
+#include "dimensions.h"
 #include "zone_breaking_tools.h"
 
 using namespace PeriDeal;
@@ -74,17 +73,15 @@ namespace
       pairs_of(given, [](const auto &bond, const auto &, const auto &) { return bond.cut; });
     ASSERT_FALSE(across.empty());
     const Vector u = made.values(bumpy_vector<dim>);
-    Vector       x(u), y(u);
     made.elements->break_pairs(across, u, 0.);
-    made.elements->multiply(x, u);
-    given.elements->multiply(y, u);
+    Vector       y    = given.product(u);
     const double size = y.linfty_norm(), within = std::sqrt(1. * dim) * 0.1 * (1. + 1e-9);
-    y -= x;
+    y -= made.product(u);
     unsigned int n_compared = 0;
     for (unsigned int i = 0; i < made.nodes->n_owned(); ++i)
       for (unsigned int d = 0; d < dim && to_end(made.position(i)) > within; ++d, ++n_compared)
         EXPECT_LT(std::abs(y.local_element(dim * i + d)), 1e-12 * size) << made.position(i);
-    EXPECT_GT(dealii::Utilities::MPI::sum(n_compared, MPI_COMM_WORLD), 0.6 * y.size());
+    EXPECT_GT(sum_of_all(n_compared), 0.6 * y.size());
     EXPECT_EQ(made.elements->size().bonds, given.elements->size().bonds);
   }
 } // namespace
@@ -141,21 +138,6 @@ TEST(ZoneBreaking, crack_made_of_broken_bonds_is_the_prescribed_one)
 
 namespace
 {
-  /** The displacement at rest. */
-  template <int dim>
-  Vector at_rest(const Body<dim> &body)
-  {
-    Vector u, rhs, change;
-    for (Vector *v : {&u, &rhs, &change})
-      body.op().initialize_vector(*v);
-    body.op().distribute(u, 0.);
-    body.op().residual(rhs, u, 0.);
-    LinearSolver(body.op(), 1e-11, 2000).solve(0., 1., change, rhs);
-    u += change;
-    return u;
-  }
-
-
   /**
    * Sum of the openings at the nodes beside a crack in a plane normal to the last axis.
    * @param inside whether a node is beside the crack
@@ -173,7 +155,7 @@ namespace
         if (std::abs(above) < 0.06 && inside(body.position(i)))
           sum += std::copysign(1., above) * u.local_element(dim * i + dim - 1);
       }
-    return dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD);
+    return sum_of_all(sum);
   }
 
 
@@ -194,11 +176,11 @@ namespace
     const auto      across =
       pairs_of(given, [](const auto &bond, const auto &, const auto &) { return bond.cut; });
     ASSERT_FALSE(across.empty());
-    const Vector whole = at_rest(made);
+    const Vector whole = made.at_rest();
     made.elements->break_pairs(across, whole, 0.);
-    const double expected = opening(given, at_rest(given), level, inside);
+    const double expected = opening(given, given.at_rest(), level, inside);
     EXPECT_GT(expected, 2. * opening(made, whole, level, inside)) << crack;
-    EXPECT_NEAR(opening(made, at_rest(made), level, inside), expected, within * expected) << crack;
+    EXPECT_NEAR(opening(made, made.at_rest(), level, inside), expected, within * expected) << crack;
   }
 } // namespace
 
@@ -221,23 +203,16 @@ TEST(ZoneBreaking, crack_made_of_broken_bonds_opens_as_the_prescribed_one)
 }
 
 
-namespace
+TEST_IN_DIMENSIONS(ZoneBreaking, follows_what_is_stretched, 1, 2, 3)
 {
-  template <int dim>
-  void check_following_zone(const Settings &more)
-  {
-    Body<dim> body(breakable<dim>("follow", 0.3) + more, ModelKind::coupled);
-    check_following_zone(body, 0.02, 40., 0.9);
-  }
-} // namespace
-
-
-TEST(ZoneBreaking, follows_what_is_stretched)
-{
-  check_following_zone<1>({});
-  check_following_zone<2>({});
-  check_following_zone<2>({{"Domain/Cells", "28, 24"}, {"Domain/Upper corner", "1.4, 1.2"}});
-  check_following_zone<3>({});
+  const Settings finer{{"Domain/Cells", "28, 24"}, {"Domain/Upper corner", "1.4, 1.2"}};
+  const std::vector<Settings> all = dim == 2 ? std::vector<Settings>{{}, finer} :
+                                               std::vector<Settings>{{}};
+  for (const Settings &more : all)
+    {
+      Body<dim> body(breakable<dim>("follow", 0.3) + more, ModelKind::coupled);
+      check_following_zone(body, 0.02, 40., 0.9);
+    }
 }
 
 
@@ -251,17 +226,6 @@ namespace
       [strain](const Point<dim> &p) { return strain * p[0] * Point<dim>::unit_vector(0); });
     body.op().distribute(u, 0.);
     return body.op().stretch_over_critical(u);
-  }
-
-
-  /** The critical stretch is 0.01. */
-  template <int dim>
-  void check_largest_stretch()
-  {
-    EXPECT_NEAR(found_stretch<dim>("everywhere", 0.004), 0.4, 1e-12);
-    // Where bonds are to appear cells count, once they are stretched too far.
-    EXPECT_EQ(found_stretch<dim>("follow", 0.004), 0.);
-    EXPECT_NEAR(found_stretch<dim>("follow", 0.012), 1.2, 1e-12);
   }
 
 
@@ -280,27 +244,27 @@ namespace
         farthest = std::max(farthest, std::abs(p[d] - 0.35));
       return farthest < 0.11;
     };
-    const Vector whole = at_rest(body);
+    const Vector whole = body.at_rest();
     body.elements->break_pairs(pairs_of(body,
                                         [&](const auto &, const auto &a, const auto &b) {
                                           return is_loose(a) != is_loose(b);
                                         }),
                                whole,
                                0.);
-    const Vector u = at_rest(body);
-    Vector       residual(u);
-    body.op().residual(residual, u, 0.);
-    EXPECT_LT(residual.linfty_norm(), 1e-10);
+    const Vector u = body.at_rest();
+    EXPECT_LT(body.residual(u).linfty_norm(), 1e-10);
     EXPECT_LT(body.op().energy(u), body.op().energy(whole));
   }
 } // namespace
 
 
-TEST(ZoneBreaking, knows_the_largest_stretch)
+/** The critical stretch is 0.01. */
+TEST_IN_DIMENSIONS(ZoneBreaking, knows_the_largest_stretch, 1, 2, 3)
 {
-  check_largest_stretch<1>();
-  check_largest_stretch<2>();
-  check_largest_stretch<3>();
+  EXPECT_NEAR(found_stretch<dim>("everywhere", 0.004), 0.4, 1e-12);
+  // Where bonds are to appear cells count, once they are stretched too far.
+  EXPECT_EQ(found_stretch<dim>("follow", 0.004), 0.);
+  EXPECT_NEAR(found_stretch<dim>("follow", 0.012), 1.2, 1e-12);
 }
 
 
