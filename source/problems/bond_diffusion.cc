@@ -137,10 +137,10 @@ namespace PeriDeal
       if (!scene.domain.has_lattice() || weights.members().empty() ||
           p.surface_correction == SurfaceCorrection::energy)
         return {};
-      const auto cut        = sides_that_cut(scene);
-      const bool partial    = p.nodal_volume == NodalVolume::partial,
-                 at_centers = scene.domain.has_nodes_at_centers(),
-                 of_itself  = !p.is_given("Boundary treatment");
+      const auto cut         = sides_that_cut(scene);
+      const bool partial     = p.sampling.nodal_volume == NodalVolume::partial,
+                 at_centers  = scene.domain.has_nodes_at_centers(),
+                 of_itself   = !p.is_given("Boundary treatment");
       const double first_row = at_centers || !partial ? 1. : 0.5;
       double       most = 0., width = 0., longest = 0., length = 0.;
       unsigned int axis = 0, along = 0;
@@ -347,9 +347,10 @@ namespace PeriDeal
           list.push_back(
             "complete families conduct " + rounded_text(effective, 6) +
             " times 'Conductivity' (section 'Material'), because of '" +
-            (p.self_term == SelfTerm::paper ? "Self term = paper" : "Calibration = analytic") +
+            (p.sampling.self_term == SelfTerm::paper ? "Self term = paper" :
+                                                       "Calibration = analytic") +
             "' in section 'Peridynamics'; with " +
-            (p.self_term == SelfTerm::paper ? "'Self term = none' and " : "") +
+            (p.sampling.self_term == SelfTerm::paper ? "'Self term = none' and " : "") +
             "'Calibration = discrete' it is 1.");
         if (p.treatment == BoundaryTreatment::fictitious_constant)
           list.emplace_back(

@@ -43,7 +43,16 @@ namespace PeriDeal
     };
     std::optional<Scatter> scatter;
 
-    bool uniform_conductivity() const;
+    /** Bonds may break. */
+    bool breaks() const
+    {
+      return fracture_energy || critical_stretch;
+    }
+
+    bool uniform_conductivity() const
+    {
+      return conductivity.is_constant();
+    }
 
     /** rho c at a point. */
     template <int dim>
@@ -67,7 +76,10 @@ namespace PeriDeal
                     const Expression &value_b);
 
     /** The same moduli in the whole body, given by numbers. */
-    bool uniform_moduli() const;
+    bool uniform_moduli() const
+    {
+      return given.are_uniform();
+    }
 
     /**
      * The storage may be 0 with electricity only, which is then steady. With elasticity exactly two
@@ -93,9 +105,6 @@ namespace PeriDeal
   private:
     Expression read(const std::string &entry, const Physics physics) const;
 
-    /** The storage may be 0 as far as this entry goes. */
-    bool may_vanish(const std::string &entry, const Physics physics) const;
-
     std::optional<MaterialProperty> optional_property(const std::string &entry,
                                                       const Physics      physics) const;
 
@@ -103,12 +112,20 @@ namespace PeriDeal
 
     void parse_moduli(const unsigned int dim, const PlaneState plane);
 
-    /** What is wrong with two numbers, or nothing. */
-    std::string fault_of_moduli(const double value_a, const double value_b) const;
+    /** Two moduli, of which the others follow. */
+    struct GivenModuli
+    {
+      std::array<Modulus, 2>          which{{Modulus::bulk, Modulus::shear}};
+      std::array<MaterialProperty, 2> properties;
+      bool                            may_be_incompressible = false;
 
-    std::array<Modulus, 2>          given_moduli{{Modulus::bulk, Modulus::shear}};
-    std::array<MaterialProperty, 2> modulus_properties;
-    bool                            may_be_incompressible = false, needs_storage = true;
+      bool are_uniform() const;
+
+      /** What is wrong with two numbers, or nothing. */
+      std::string fault(const double value_a, const double value_b) const;
+    };
+
+    GivenModuli given;
   };
 
 

@@ -14,8 +14,7 @@ namespace PeriDeal
   {
     return body.elasticity.has_full_kinematics() ?
              "with 'Kinematics = full' each bond has its own direction" :
-           body.elasticity.is_static() &&
-               (body.material.fracture_energy || body.material.critical_stretch) ?
+           body.elasticity.is_static() && body.material.breaks() ?
              "bonds may break in a body at rest" :
            body.peridynamics.corrects_elastic_bonds() ?
              "with 'Surface correction' bonds have factors of their own" :
