@@ -93,7 +93,7 @@ namespace PeriDeal
       nodes          = std::make_unique<Nodes<dim>>(*handler,
                                            scene.domain,
                                            scene.cracks,
-                                           scene.peridynamics.nodal_volume);
+                                           scene.peridynamics.sampling.nodal_volume);
       bonds          = std::make_unique<BondOperator<dim>>(*nodes, scene);
     }
 

@@ -26,7 +26,7 @@ namespace PeriDeal
       nodes = std::make_unique<Nodes<dim>>(*handler,
                                            scene.domain,
                                            scene.cracks,
-                                           scene.peridynamics.nodal_volume);
+                                           scene.peridynamics.sampling.nodal_volume);
       op    = std::make_unique<StateOperator<dim>>(*nodes, scene);
     }
 

@@ -27,9 +27,8 @@ namespace PeriDeal
     public:
       explicit Front(const std::vector<Point<3>> &corners)
         : corners(corners)
+        , normal(doubled_area_vector(corners))
       {
-        for (unsigned int i = 1; i + 1 < corners.size(); ++i)
-          normal += cross_product_3d(corners[i] - corners[0], corners[i + 1] - corners[0]);
         normal /= normal.norm();
         for (unsigned int i = 0; i < corners.size(); ++i)
           length += edge(i).norm();

@@ -36,7 +36,12 @@ namespace PeriDeal
 
     KernelParameters kernel_parameters(const Peridynamics &p, const double horizon)
     {
-      return {p.kernel, p.kernel_exponent, p.volume_fraction, p.calibration, p.self_term, horizon};
+      return {p.kernel,
+              p.kernel_exponent,
+              p.sampling.volume_fraction,
+              p.sampling.calibration,
+              p.sampling.self_term,
+              horizon};
     }
 
 
@@ -116,7 +121,7 @@ namespace PeriDeal
       outside = make_fictitious_nodes(nodes,
                                       body.boundary_conditions,
                                       body.peridynamics.treatment,
-                                      body.peridynamics.nodal_volume,
+                                      body.peridynamics.sampling.nodal_volume,
                                       of_bonds.reach_in_sites());
     // Some processes may have none.
     AssertThrow(

@@ -13,56 +13,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void FictitiousExtension<dim>::require(const BodyParameters<dim> &body)
-  {
-    const Peridynamics &pd         = body.peridynamics;
-    const auto         &conditions = body.boundary_conditions;
-    const auto         &symmetry   = conditions.symmetry;
-    const auto          refuse     = [&](const bool fault, const std::string &what) {
-      pd.refuse(fault, "Surface correction", "'fictitious nodes' " + what);
-    };
-    const std::string other = " Use another correction, or ";
-    refuse(
-      body.domain.has_nodes_at_centers(),
-      "continues the displacement from nodes on the sides, and 'Nodes' in section 'Domain' is 'cell centers'." +
-        other + "'vertices'.");
-    refuse(!body.domain.has_lattice() || body.domain.is_image(),
-           "needs flat sides of a lattice, which this 'Shape' in section 'Domain' has not." +
-             other + "'box' or 'plate with hole'.");
-    refuse(pd.nodal_volume != NodalVolume::partial,
-           "needs 'Nodal volume = partial'." + other + "that.");
-    refuse(body.cracks.double_nodes(),
-           "is not for cracks with 'Mesh = faces', where two nodes are at one place." + other +
-             "'removed'.");
-    refuse(body.elasticity.has_full_kinematics(),
-           "is not for 'Kinematics = full'." + other + "'linear'.");
-    const double reach = body.horizon() + body.domain.spacing().norm();
-    for (const types::boundary_id side : symmetry)
-      {
-        const std::string name = "'" + name_of_side(side, true) + "'";
-        refuse(body.cracks.distance_to_side(side) < reach,
-               "cannot mirror a crack that comes within a horizon of the plane of symmetry " +
-                 name + ". Hold that side by 'Displacement', or use another correction.");
-        refuse(
-          side % 2 == 0 && std::count(symmetry.begin(), symmetry.end(), side + 1) > 0,
-          "knows one plane of symmetry along each axis, and 'Symmetry' in section 'Boundary conditions' has " +
-            name + " and '" + name_of_side(side + 1, true) +
-            "'. Hold one of these sides by 'Displacement'.");
-      }
-    refuse(body.material.fracture_energy || body.material.critical_stretch,
-           "is not for bonds that may break." + other +
-             "leave 'Fracture energy' and 'Critical stretch' out.");
-    refuse(
-      conditions.traction_layer > 0.,
-      "lets tractions act on the sides themselves; 'Traction layer' in section 'Boundary conditions' has no effect. Leave that out.");
-    refuse(dim > 1 && body.elasticity.is_bond_based(),
-           "is for 'Model = state-based' in section 'Elasticity'." + other + "that.");
-    refuse(pd.wants_lattice_form(),
-           "makes a matrix; 'Operator form' is 'lattice'." + other + "'auto'.");
-  }
-
-
-  template <int dim>
   FictitiousExtension<dim>::FictitiousExtension(const Families<dim>                   &families,
                                                 const std::array<BeyondSide, 2 * dim> &beyond)
     : families(families)

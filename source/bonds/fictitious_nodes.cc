@@ -88,28 +88,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void require_fictitious_nodes(const BodyParameters<dim> &body)
-  {
-    const Peridynamics            &pd = body.peridynamics;
-    const BoundaryConditions<dim> &bc = body.boundary_conditions;
-    pd.refuse(!body.domain.is_box() && pd.has_fictitious_nodes(),
-              "Boundary treatment",
-              "fictitious nodes need the sides of a box ('Shape' in section 'Domain' = box).");
-    body.domain.require_lattice(pd.has_layers(), pd.where("Boundary treatment"), "'layer'");
-    bc.refuse(
-      !body.domain.has_lattice() && !bc.symmetry.empty(),
-      "Symmetry",
-      "mirrors peridynamics in the sides of a box; this body is from a mesh file. Leave the entry out: "
-      "a side that is named nowhere is insulated, which is what a plane of symmetry is.");
-    bc.refuse(
-      !bc.symmetry.empty() && body.cracks.double_nodes() && !body.domain.has_nodes_at_centers(),
-      "Symmetry",
-      "is not for cracks with 'Mesh = faces' in section 'Cracks', where two nodes are at one place. Use 'Mesh = pairs', or leave the entry out: a side that is named nowhere "
-      "is insulated.");
-  }
-
-
-  template <int dim>
   std::vector<FictitiousNode<dim>> make_fictitious_nodes(const Nodes<dim>              &nodes,
                                                          const BoundaryConditions<dim> &conditions,
                                                          const BoundaryTreatment        treatment,
@@ -171,6 +149,5 @@ namespace PeriDeal
   }
 
 
-  PERIDEAL_INSTANTIATE_FUNCTION(require_fictitious_nodes);
   PERIDEAL_INSTANTIATE_FUNCTION(make_fictitious_nodes);
 } // namespace PeriDeal

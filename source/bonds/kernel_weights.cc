@@ -16,58 +16,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void KernelWeights<dim>::require(const BodyParameters<dim> &body)
-  {
-    const Domain<dim>  &domain = body.domain;
-    const Peridynamics &pd     = body.peridynamics;
-    pd.refuse(dim > 1 && pd.extrapolates_layers(),
-              "Flux treatment",
-              "'layer extrapolation' is for 'Dimension' 1 only; use 'extrapolation'.");
-    pd.refuse(dim > 2 && pd.self_term == SelfTerm::paper,
-              "Self term",
-              "'paper' is defined for 'Dimension' 1 and 2 only.");
-    pd.refuse(pd.correction_direction != CorrectionDirection::both &&
-                static_cast<unsigned int>(pd.correction_direction) >= dim,
-              "Correction direction",
-              "there is no such direction with 'Dimension' = " + std::to_string(dim) + ".");
-    domain.require_lattice(pd.volume_fraction == VolumeFraction::exact,
-                           pd.where("Volume fraction"),
-                           "'exact'");
-    domain.require_lattice(pd.self_term == SelfTerm::paper, pd.where("Self term"), "'paper'");
-    domain.require_lattice(pd.wants_lattice_form(), pd.where("Operator form"), "'lattice'");
-    if (!domain.has_lattice())
-      {
-        pd.refuse(
-          !(pd.horizon > 0.),
-          "Horizon",
-          "is empty; a mesh file has no node spacing that 'Horizon ratio' could refer to: give a length.");
-        return;
-      }
-    const std::string    entry   = pd.horizon > 0. ? "Horizon" : "Horizon ratio";
-    const Tensor<1, dim> h       = domain.spacing();
-    const double         horizon = body.horizon();
-    double               longest = 0.;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        pd.refuse(horizon < h[d] * (1. - 1e-9),
-                  entry,
-                  "the horizon, " + number_text(horizon) +
-                    ", is shorter than the node spacing in " + std::string(1, "xyz"[d]) + ", " +
-                    number_text(h[d]) + ": nodes have no neighbours there.");
-        longest = std::max(longest, domain.upper[d] - domain.lower[d]);
-      }
-    pd.refuse(horizon > longest * (1. + 1e-9),
-              entry,
-              "the horizon, " + number_text(horizon) + ", is longer than the body, " +
-                number_text(longest) + ". " +
-                (pd.horizon > 0. ?
-                   "Choose a shorter one: three spacings of the nodes are " +
-                     number_text(3. * *std::max_element(h.begin_raw(), h.end_raw())) + "." :
-                   "Choose a smaller one, or more 'Cells' in section 'Domain'."));
-  }
-
-
-  template <int dim>
   KernelWeights<dim>::KernelWeights(const KernelParameters              &parameters,
                                     const std::optional<Tensor<1, dim>> &spacing,
                                     const double                         smallest_spacing)

@@ -84,51 +84,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Grading<dim>::require(const Scene<dim> &scene)
-  {
-    const CouplingControl &coupling = scene.coupling;
-    const bool             adaptive = coupling.is_adaptive();
-    const bool             coarse   = scene.domain.coarsening.times > 0,
-               coupled              = runs(scene, ModelKind::coupled);
-    coupling.refuse(adaptive && !coupled,
-                    "Zone",
-                    "is 'adaptive', but 'Models' has no 'coupled', which the mesh would follow.");
-    coupling.refuse(
-      adaptive && !coarse,
-      "Zone",
-      "'adaptive' changes the mesh, but 'Coarsening' in section 'Domain' is 0: no cell may be "
-      "larger than those of 'Cells'. Give it at least 1.");
-    coupling.refuse(
-      adaptive && scene.cracks.on_faces(),
-      "Zone",
-      "'adaptive' is for cracks that lie across cells; 'Mesh' in section 'Cracks' is 'faces'.");
-    coupling.refuse(
-      adaptive && scene.time.time_step > 0. &&
-        (scene.time.stepper == "euler" || scene.time.stepper == "rk4"),
-      "Zone",
-      "'adaptive' changes the mesh and with it the stability bound of '" + scene.time.stepper +
-        "', for which 'Time step' in section 'Time' is given. Use 'Time step = auto' or 'Stepper = auto'.");
-    const auto refuse = [&](const bool fault, const std::string &what) {
-      scene.domain.refuse(coarse && fault,
-                          "Coarsening",
-                          "found " + std::to_string(scene.domain.coarsening.times) + ", but " +
-                            what);
-    };
-    refuse(
-      runs(scene, ModelKind::peridynamics),
-      "'Models' has peridynamics, whose bonds need fine cells everywhere. Use 'coupled', or 0 here.");
-    refuse(coupled && !coupling.exchanges(),
-           "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
-    refuse(scene.domain.coarsening.at_ends && scene.cracks.cracks.empty(),
-           "'Fine where' is 'crack ends', and section 'Cracks' has no crack.");
-    refuse(
-      !scene.domain.coarsening.by_formula && (adaptive || coupling.is_near_cracks()) &&
-        scene.cracks.cracks.empty(),
-      "section 'Cracks' has none for which cells would stay fine. Give a formula in 'Fine where'.");
-  }
-
-
-  template <int dim>
   Grading<dim>::Grading(const Scene<dim> &scene, const Triangulation<dim> &mesh)
     : zone(scene.coupling, scene.horizon())
     , by_zone(true)

@@ -308,7 +308,7 @@ namespace PeriDeal
       unsigned int       n_refinements = 0;
       if (!domain.has_lattice())
         {
-          coarse = read_mesh_file<dim>(domain.mesh_file, domain.files.folder, communicator, ids);
+          coarse = read_mesh_file<dim>(domain.files.mesh, domain.files.folder, communicator, ids);
           note_cracks_on_faces(coarse, scene.cracks, notes);
         }
       else if (domain.shape == Shape::plate_with_hole)

@@ -108,7 +108,7 @@ namespace PeriDeal
 
   template <int dim>
   Nodes<dim>::Nodes(const DoFHandler<dim> &dof_handler, const BodyParameters<dim> &body)
-    : Nodes(dof_handler, body.domain, body.cracks, body.peridynamics.nodal_volume)
+    : Nodes(dof_handler, body.domain, body.cracks, body.peridynamics.sampling.nodal_volume)
   {}
 
 

@@ -141,7 +141,7 @@ namespace PeriDeal
                                   const std::array<bool, 2 * dim> &cut)
     {
       const Peridynamics &p       = scene.peridynamics;
-      const bool          partial = p.nodal_volume == NodalVolume::partial,
+      const bool          partial = p.sampling.nodal_volume == NodalVolume::partial,
                  at_centers       = scene.domain.has_nodes_at_centers();
       const double first_row      = at_centers || !partial ? 1. : 0.5;
       CutFamilies  result;
@@ -367,9 +367,10 @@ namespace PeriDeal
           list.push_back(
             "complete families conduct " + rounded_text(effective, 6) +
             " times 'Conductivity' (section 'Material'), because of '" +
-            (p.self_term == SelfTerm::paper ? "Self term = paper" : "Calibration = analytic") +
+            (p.sampling.self_term == SelfTerm::paper ? "Self term = paper" :
+                                                       "Calibration = analytic") +
             "' in section 'Peridynamics'; with " +
-            (p.self_term == SelfTerm::paper ? "'Self term = none' and " : "") +
+            (p.sampling.self_term == SelfTerm::paper ? "'Self term = none' and " : "") +
             "'Calibration = discrete' it is 1.");
         if (p.treatment == BoundaryTreatment::fictitious_constant)
           list.emplace_back(

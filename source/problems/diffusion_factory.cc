@@ -14,6 +14,7 @@
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/rules.h>
 #include <perideal/solvers/linear_solver.h>
 
 #include <algorithm>
@@ -29,11 +30,7 @@ namespace PeriDeal
   template <int dim>
   void require_diffusion(const Scene<dim> &scene)
   {
-    for (const ModelKind model : scene.general.models)
-      if (model == ModelKind::peridynamics)
-        BondOperator<dim>::require(scene);
-      else
-        FEMOperator<dim>::require(scene, model == ModelKind::coupled);
+    refuse_diffusion(scene);
     if (scene.time.steady)
       require_steady_state(scene);
   }
@@ -150,7 +147,7 @@ namespace PeriDeal
       const Peridynamics &p = scene.peridynamics;
       if (!runs(scene, ModelKind::peridynamics) || scene.domain.shape != Shape::box ||
           !scene.cracks.cracks.empty() || p.horizon > 0. || scene.time.steady ||
-          p.self_term != SelfTerm::none || !scene.material.phases.all().names.empty() ||
+          p.sampling.self_term != SelfTerm::none || !scene.material.phases.all().names.empty() ||
           !scene.material.conductivity.is_constant())
         return;
       // In the direction with the fewest cells.
@@ -165,8 +162,8 @@ namespace PeriDeal
                                               scene.horizon(),
                                               p.kernel,
                                               p.kernel_exponent,
-                                              p.volume_fraction,
-                                              p.calibration);
+                                              p.sampling.volume_fraction,
+                                              p.sampling.calibration);
       const double exact  = classical_decay_rate(wave, 1., 1.);
       const double bonds =
         1. - lattice_decay_rate(lattice_terms<dim>(family, h, 1.), wave, 1.) / exact;

@@ -121,26 +121,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void HeatOfDeformation<dim>::require(const Scene<dim> &scene)
-  {
-    if (!scene.elasticity.absolute_reference)
-      return;
-    const auto refuse = [&](const bool fault, const std::string &what) {
-      scene.elasticity.refuse(fault,
-                              "Heat of deformation",
-                              "found 'true', which is not for " + what);
-    };
-    refuse(
-      scene.material.storage_depends_on_temperature(),
-      "a 'Heat capacity' or 'Density' of T in section 'Material'. Let them not depend on T there.");
-    refuse(scene.finite_elements.consistent_capacity,
-           "'Capacity = consistent' in section 'Finite elements'. Use 'lumped'.");
-    refuse(scene.domain.coarsening.times > 0,
-           "meshes with 'Coarsening' in section 'Domain'. Leave that out.");
-  }
-
-
-  template <int dim>
   void HeatOfDeformation<dim>::begin(const SolidProblem<dim> &solid)
   {
     const std::vector<double> s = entropies(solid);

@@ -134,7 +134,7 @@ namespace PeriDeal
       on.number(FE_Q<dim>(1), scene.domain, true);
     else
       on.number(FE_DGQ<dim>(0), scene.domain, true);
-    node_set = &on.nodes(scene, scene.peridynamics.nodal_volume);
+    node_set = &on.nodes(scene, scene.peridynamics.sampling.nodal_volume);
   }
 
 
@@ -147,34 +147,34 @@ namespace PeriDeal
       {"auto", "exchange", "none", "layer", "fictitious mirror", "fictitious constant"};
     static const char *const fluxes[] = {"natural", "extrapolation", "layer extrapolation"};
     const Peridynamics      &p        = scene.peridynamics;
-    return {{"nodes", scene.domain.nodes == NodePlacement::vertices ? "vertices" : "cell centers"},
-            {"horizon", rounded_text(scene.horizon(), 6)},
-            {"m", rounded_text(scene.horizon() / families.nodes().smallest_spacing(), 6)},
-            {"kernel",
-             std::string(kernels[static_cast<int>(p.kernel)]) + ", exponent " +
-               std::to_string(p.kernel_exponent)},
-            {"volume fraction", fractions[static_cast<int>(p.volume_fraction)]},
-            {"calibration",
-             p.calibration == Calibration::analytic ? "analytic" :
-             families.weights().has_complete_families() ?
-                                                      "discrete" :
-                                                      "analytic, because no family is complete"},
-            {"self term", p.self_term == SelfTerm::none ? "none" : "paper"},
-            {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
-            {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
-            {"surface correction",
-             p.surface_correction == SurfaceCorrection::automatic ?
-               "auto: " + automatic_correction(scene) :
-             p.surface_correction == SurfaceCorrection::none          ? "none" :
-             p.surface_correction == SurfaceCorrection::crack_scaling ? "crack scaling" :
-             p.surface_correction == SurfaceCorrection::moments       ? "moments" :
-             p.completes_families()                                   ? "fictitious nodes" :
-             scene.general.physics == Physics::elasticity ?
-                                      "energy" :
-             p.correction_direction == CorrectionDirection::both ?
-                                      "energy, each direction" :
-                                      std::string("energy, direction ") +
-                                        "xyz"[static_cast<int>(p.correction_direction)]}};
+    return {
+      {"nodes", scene.domain.nodes == NodePlacement::vertices ? "vertices" : "cell centers"},
+      {"horizon", rounded_text(scene.horizon(), 6)},
+      {"m", rounded_text(scene.horizon() / families.nodes().smallest_spacing(), 6)},
+      {"kernel",
+       std::string(kernels[static_cast<int>(p.kernel)]) + ", exponent " +
+         std::to_string(p.kernel_exponent)},
+      {"volume fraction", fractions[static_cast<int>(p.sampling.volume_fraction)]},
+      {"calibration",
+       p.sampling.calibration == Calibration::analytic ? "analytic" :
+       families.weights().has_complete_families()      ? "discrete" :
+                                                         "analytic, because no family is complete"},
+      {"self term", p.sampling.self_term == SelfTerm::none ? "none" : "paper"},
+      {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
+      {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},
+      {"surface correction",
+       p.surface_correction == SurfaceCorrection::automatic ?
+         "auto: " + automatic_correction(scene) :
+       p.surface_correction == SurfaceCorrection::none          ? "none" :
+       p.surface_correction == SurfaceCorrection::crack_scaling ? "crack scaling" :
+       p.surface_correction == SurfaceCorrection::moments       ? "moments" :
+       p.completes_families()                                   ? "fictitious nodes" :
+       scene.general.physics == Physics::elasticity ?
+                                "energy" :
+       p.correction_direction == CorrectionDirection::both ?
+                                "energy, each direction" :
+                                std::string("energy, direction ") +
+                                  "xyz"[static_cast<int>(p.correction_direction)]}};
   }
 
 

@@ -8,6 +8,7 @@
 #include <perideal/mesh/grading.h>
 #include <perideal/problems/problem_factory.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/rules.h>
 #include <perideal/solvers/motion_stepper.h>
 
 #include <nlohmann/json.hpp>
@@ -44,14 +45,15 @@ namespace PeriDeal
       if (scene.domain.has_lattice())
         {
           context.horizon = scene.horizon();
-          context.family  = lattice_terms(lattice_family<dim>(scene.domain.spacing(),
-                                                             context.horizon,
-                                                             scene.peridynamics.kernel,
-                                                             scene.peridynamics.kernel_exponent,
-                                                             scene.peridynamics.volume_fraction,
-                                                             scene.peridynamics.calibration),
-                                         scene.domain.spacing(),
-                                         context.conductivity);
+          context.family =
+            lattice_terms(lattice_family<dim>(scene.domain.spacing(),
+                                              context.horizon,
+                                              scene.peridynamics.kernel,
+                                              scene.peridynamics.kernel_exponent,
+                                              scene.peridynamics.sampling.volume_fraction,
+                                              scene.peridynamics.sampling.calibration),
+                          scene.domain.spacing(),
+                          context.conductivity);
         }
       if (scene.domain.shape != Shape::box)
         context.no_named = "is the solution in a box, but 'Shape' in section 'Domain' is another.";
@@ -171,7 +173,7 @@ namespace PeriDeal
     with_location(text, [&] {
       require_stepper(scene);
       problem_factory(scene).require_computable(scene);
-      Grading<dim>::require(scene);
+      refuse_grading(scene);
     });
   }
 

@@ -12,6 +12,7 @@
 #include <perideal/problems/solid_problem.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/rules.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
@@ -29,13 +30,6 @@ namespace PeriDeal
 
   namespace
   {
-    template <int dim>
-    bool breaks(const Scene<dim> &scene)
-    {
-      return scene.material.fracture_energy || scene.material.critical_stretch;
-    }
-
-
     /**
      * Of the end of a crack along an axis: how much farther than it the cells go that it takes
      * away, in cells. A cell goes from its middle on.
@@ -196,7 +190,7 @@ namespace PeriDeal
           const bool  removed = cracks.mesh == CrackMesh::removed,
                      bonds    = runs(scene, ModelKind::peridynamics);
           if (scene.domain.shape != Shape::box || !cracks.tips.empty() ||
-              !scene.elasticity.is_static() || breaks(scene) || !(removed || bonds))
+              !scene.elasticity.is_static() || scene.material.breaks() || !(removed || bonds))
             return;
           for (unsigned int k = 0; k < cracks.cracks.size(); ++k)
             {
@@ -303,7 +297,7 @@ namespace PeriDeal
       constexpr double from = 3., to = 42.; // degrees
       if constexpr (dim == 2)
         {
-          if (!breaks(scene) || !scene.elasticity.is_static() ||
+          if (!scene.material.breaks() || !scene.elasticity.is_static() ||
               scene.elasticity.breaks_in_motion() || !scene.domain.has_lattice())
             return;
           for (unsigned int k = 0; k < scene.cracks.cracks.size(); ++k)
@@ -320,68 +314,6 @@ namespace PeriDeal
                   "With 'Breaking = in motion' in section 'Elasticity' it hardly does, with 'Solver = dynamics' it does not, nor where the lattice lies along it.");
             }
         }
-    }
-
-
-    template <int dim>
-    void refuse_breaking(const Scene<dim> &scene)
-    {
-      scene.elasticity.refuse(
-        scene.elasticity.is_given("Breaking") && !scene.material.fracture_energy &&
-          !scene.material.critical_stretch,
-        "Breaking",
-        "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
-    }
-
-
-    /** What only bonds have, or only those of one model, in a scene in which there are none. */
-    template <int dim>
-    void refuse_what_no_model_has(const Scene<dim> &scene)
-    {
-      const Peridynamics &pd       = scene.peridynamics;
-      const Material     &material = scene.material;
-      const bool          bonds    = runs(scene, ModelKind::peridynamics),
-                 none              = !bonds && !runs(scene, ModelKind::coupled);
-      pd.refuse(
-        none && pd.completes_families(),
-        "Surface correction",
-        "'fictitious nodes' has no effect without 'Models = peridynamics' or 'coupled'. Use 'none'.");
-      pd.refuse(
-        !runs(scene, ModelKind::coupled) && pd.scales_beside_cracks(),
-        "Surface correction",
-        "'crack scaling' without 'Models = coupled' has no effect with 'Physics = elasticity'; use 'none', 'energy' or 'moments'.");
-      material.refuse(
-        none && (material.fracture_energy || material.critical_stretch),
-        material.fracture_energy ? "Fracture energy" : "Critical stretch",
-        "has no effect: finite elements do not break. Add 'peridynamics' or 'coupled' to 'Models', or leave the entry out.");
-      material.refuse(material.scatter && runs(scene, ModelKind::coupled),
-                      "Weibull modulus",
-                      "is for 'Models = peridynamics', not 'coupled'; leave the entry out.");
-      refuse_breaking(scene);
-      scene.elasticity.refuse(
-        scene.elasticity.contact_is_asked() && !bonds &&
-          (none || !scene.coupling.exchanges() || scene.cracks.on_faces()),
-        "Contact",
-        "has no effect: it is for 'Models = peridynamics', and for 'coupled' with 'Scheme = exchange' where 'Mesh' in section 'Cracks' is not 'faces'. Leave it out, or add one of these.");
-      if (bonds)
-        return;
-      pd.refuse(
-        pd.corrects_elastic_bonds(),
-        "Surface correction",
-        "without 'Models = peridynamics' has no effect with 'Physics = elasticity'; use 'none'.");
-      pd.refuse(
-        pd.wants_lattice_form(),
-        "Operator form",
-        "'lattice' is not defined without 'Models = peridynamics' with 'Physics = elasticity'; use 'auto'.");
-      scene.boundary_conditions.refuse(
-        scene.boundary_conditions.traction_layer > 0.,
-        "Traction layer",
-        "has no effect without 'Models = peridynamics': finite elements have "
-        "tractions on their faces. Leave it empty.");
-      scene.elasticity.refuse(
-        scene.elasticity.micromodulus == Micromodulus::constant,
-        "Micromodulus",
-        "'constant' is for peridynamics in the whole body: add 'peridynamics' to 'Models', or leave the entry out.");
     }
 
 
@@ -437,8 +369,7 @@ namespace PeriDeal
             StateOperator<dim>::require(scene);
           else
             ElasticElements<dim>::require(scene, model == ModelKind::coupled);
-        refuse_what_no_model_has(scene);
-        HeatOfDeformation<dim>::require(scene);
+        refuse_deformation(scene);
         if (scene.elasticity.is_static())
           require_equilibrium(scene);
         if (scene.heat)
@@ -453,8 +384,7 @@ namespace PeriDeal
       bool may_solve_again(const Scene<dim> &scene) const override
       {
         return scene.elasticity.is_static() &&
-               (scene.material.fracture_energy || scene.material.critical_stretch ||
-                !scene.cracks.tips.empty());
+               (scene.material.breaks() || !scene.cracks.tips.empty());
       }
 
       void note_scene(const Scene<dim>         &scene,

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <perideal/analysis/crack_surface.h>
-#include <perideal/analysis/crack_surface.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/problems/solid_problem.h>
@@ -178,9 +177,6 @@ namespace PeriDeal
   class HeatOfDeformation
   {
   public:
-    /** Throws UserError where temperatures cannot be changed node by node. Not collective. */
-    static void require(const Scene<dim> &scene);
-
     /** The body is in its first equilibrium: what has deformed it before releases nothing. */
     void begin(const SolidProblem<dim> &solid);
 

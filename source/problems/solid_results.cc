@@ -406,8 +406,7 @@ namespace PeriDeal
     std::string no_stress_intensity(const Scene<dim> &scene, const json &models)
     {
       const Material &material = scene.material;
-      if (scene.cracks.cracks.empty() || !scene.elasticity.is_static() ||
-          material.fracture_energy || material.critical_stretch)
+      if (scene.cracks.cracks.empty() || !scene.elasticity.is_static() || material.breaks())
         return "";
       bool found = false, all = true;
       for (const auto &[name, model] : models.items())

@@ -22,21 +22,11 @@ namespace PeriDeal
     };
 
 
-    template <int dim>
-    std::string obstacle_on_mesh(const BodyParameters<dim> &body)
-    {
-      if (dim == 1)
-        return "in 1D";
-      return body.domain.has_nodes_at_centers() ? "with nodes at cell centres" : "";
-    }
-
-
     /** Explicit steps are taken, which stiff nodes make short. */
     template <int dim>
     bool takes_steps(const BodyParameters<dim> &body)
     {
-      return body.material.fracture_energy || body.material.critical_stretch ||
-             body.elasticity.solver == ElasticSolver::dynamics;
+      return body.material.breaks() || body.elasticity.solver == ElasticSolver::dynamics;
     }
 
 
@@ -74,14 +64,14 @@ namespace PeriDeal
     template <int dim>
     Hindrance find_hindrance(const BodyParameters<dim> &body)
     {
-      if (!body.domain.has_lattice())
-        if (const std::string obstacle = obstacle_on_mesh(body); !obstacle.empty())
-          return {"on a mesh from a file families do not go on " + obstacle,
-                  "They do with 'Nodes = vertices' (section 'Domain')."};
+      if (!body.domain.has_lattice() && (dim == 1 || body.domain.has_nodes_at_centers()))
+        return {std::string("on a mesh from a file families do not go on ") +
+                  (dim == 1 ? "in 1D" : "with nodes at cell centres"),
+                "They do with 'Nodes = vertices' (section 'Domain')."};
       if (body.cracks.double_nodes())
         return {"cracks are cut into the mesh ('Mesh = faces')",
                 "Families go on with 'Mesh = removed' (section 'Cracks')."};
-      if (body.peridynamics.nodal_volume != NodalVolume::partial)
+      if (body.peridynamics.sampling.nodal_volume != NodalVolume::partial)
         return {"nodes on sides have whole cells ('Nodal volume = full')",
                 "Families go on with 'Nodal volume = partial'."};
       if (body.elasticity.micromodulus == Micromodulus::constant)

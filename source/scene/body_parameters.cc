@@ -45,12 +45,12 @@ namespace PeriDeal
                 "; bonds and elements share the nodes on the vertices: set 'Nodes = vertices'"};
     if (!peridynamics.natural_fluxes())
       return {peridynamics.where("Flux treatment"), "makes slaves of nodes; use 'natural'"};
-    if (peridynamics.self_term != SelfTerm::none)
+    if (peridynamics.sampling.self_term != SelfTerm::none)
       return {peridynamics.where("Self term"), "is not 'none'; use that"};
     if (peridynamics.corrects_elastic_bonds())
       return {peridynamics.where("Surface correction"),
               "is for bonds without finite elements; use 'none' or 'crack scaling'"};
-    if (peridynamics.nodal_volume != NodalVolume::partial)
+    if (peridynamics.sampling.nodal_volume != NodalVolume::partial)
       return {peridynamics.where("Nodal volume"), "is 'full'; use 'partial'"};
     return {};
   }
@@ -75,8 +75,8 @@ namespace PeriDeal
         step = 0.25 * smallest_spacing(domain);
       }
     // Elastic bodies change between any two steps; diffusion stops at each event.
-    const double whole_steps = deforms ? -1. : time_step;
-    return CrackHistory<dim>(cracks, step, steady ? 1. : cracks.end_time, whole_steps);
+    const double whole_steps = deforms ? -1. : run.time_step;
+    return CrackHistory<dim>(cracks, step, run.steady ? 1. : cracks.end_time, whole_steps);
   }
 
 

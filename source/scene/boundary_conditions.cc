@@ -197,21 +197,12 @@ namespace PeriDeal
               return p.name == part_name;
             }))
           error(entry, "the part '" + name + "' is named twice.");
-        const PartText of = split_part(value, at);
-        Part           part;
-        part.name = name;
-        part.kind = of.kind;
-        part.id   = first_part_id + parts.size();
-        if (part.kind == Part::point)
-          {
-            const dealii::Point<dim> p = parse_point<dim>(of.rest, at);
-            for (unsigned int d = 0; d < dim; ++d)
-              part.place[d] = p[d];
-          }
-        else
-          part.inside = part_formula(of.rest, at);
+        std::string side;
+        Part        part = parse_part(value, dim, at, side);
+        part.name        = name;
+        part.id          = first_part_id + parts.size();
         if (part.kind == Part::of_side)
-          part.side = side_id(of.side, entry, false);
+          part.side = side_id(side, entry, false);
         parts.push_back(part);
       }
   }
@@ -253,60 +244,38 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BoundaryConditions<dim>::parse_transfers()
-  {
-    transfers.clear();
-    for (const TransferKind &kind : transfer_kinds())
-      for (const SurfaceTransfer &transfer : parse_list<SurfaceTransfer>(
-             kind.entry,
-             [&](SurfaceTransfer &read, const std::string &text, const std::string &at) {
-               read.set(kind, parse_formulas(text, kind.formulas, at), at);
-             }))
-        transfers.push_back(transfer);
-  }
-
-
-  template <int dim>
-  template <typename Condition>
-  void BoundaryConditions<dim>::refuse_both(const std::string &entry,
-                                            const Condition   &condition,
-                                            const std::string &other_entry) const
-  {
-    error(entry,
-          (part(condition.id) != nullptr ? "the part '" : "the side '") + condition.name +
-            "' is also named in '" + other_entry + "', which contradicts it.");
-  }
-
-
-  template <int dim>
   void BoundaryConditions<dim>::parse_symmetry()
   {
     symmetry.clear();
-    std::vector<std::string> names;
     for (const std::string &piece : split_list(text("Symmetry"), ';'))
-      for (const std::string &name : split_list(piece, ','))
-        names.push_back(unquoted(name));
-    for (const std::string &name : names)
-      {
-        const dealii::types::boundary_id id = side_id(name, "Symmetry");
-        if (part(id) != nullptr)
-          error(
-            "Symmetry",
-            "'" + name +
-              "' is a part; only whole sides can be symmetry planes. With elasticity hold the part by 'Displacement', "
-              "0 normal to it and 'free' along it.");
-        if (name == "hole")
-          error("Symmetry", "'hole' is not flat: only flat sides can be symmetry planes.");
-        if (has(symmetry, id))
-          error("Symmetry", "the side '" + name + "' is named twice.");
-        symmetry.push_back(id);
-      }
+      for (const std::string &given : split_list(piece, ','))
+        {
+          const std::string                name = unquoted(given);
+          const dealii::types::boundary_id id   = side_id(name, "Symmetry");
+          if (part(id) != nullptr)
+            error(
+              "Symmetry",
+              "'" + name +
+                "' is a part; only whole sides can be symmetry planes. With elasticity hold the part by 'Displacement', "
+                "0 normal to it and 'free' along it.");
+          if (name == "hole")
+            error("Symmetry", "'hole' is not flat: only flat sides can be symmetry planes.");
+          if (has(symmetry, id))
+            error("Symmetry", "the side '" + name + "' is named twice.");
+          symmetry.push_back(id);
+        }
   }
 
 
   template <int dim>
   void BoundaryConditions<dim>::check_scalar_conditions() const
   {
+    const auto refuse_both =
+      [&](const std::string &entry, const auto &condition, const std::string &other_entry) {
+        error(entry,
+              (part(condition.id) != nullptr ? "the part '" : "the side '") + condition.name +
+                "' is also named in '" + other_entry + "', which contradicts it.");
+      };
     for (const SideCondition &condition : dirichlet)
       for (const SurfaceTransfer &transfer : transfers)
         if (transfer.id == condition.id)
@@ -362,28 +331,29 @@ namespace PeriDeal
       [](SideCondition &condition, const std::string &text, const std::string &at) {
         condition.value = parse_formulas(text, {"value"}, at)[0];
       });
-    parse_transfers();
-    displacement = parse_vectors("Displacement");
-    for (const VectorCondition &rate : parse_vectors("Velocity"))
-      displacement.push_back(rate);
-    traction = parse_vectors("Traction");
+    transfers.clear();
+    for (const TransferKind &kind : transfer_kinds())
+      for (const SurfaceTransfer &transfer : parse_list<SurfaceTransfer>(
+             kind.entry,
+             [&](SurfaceTransfer &read, const std::string &text, const std::string &at) {
+               read.set(kind, parse_formulas(text, kind.formulas, at), at);
+             }))
+        transfers.push_back(transfer);
+    displacement.clear();
+    traction.clear();
+    for (const std::string entry : {"Displacement", "Velocity", "Traction"})
+      for (const VectorCondition &condition : parse_list<VectorCondition>(
+             entry,
+             [&](VectorCondition &read, const std::string &text, const std::string &at) {
+               read.rate = entry == "Velocity";
+               parse_components(text, dim, entry != "Traction", at, read);
+             }))
+        (entry == "Traction" ? traction : displacement).push_back(condition);
     parse_symmetry();
     SceneSection::parse();
     check_scalar_conditions();
     check_vector_conditions();
     check_parts();
-  }
-
-
-  template <int dim>
-  std::vector<VectorCondition> BoundaryConditions<dim>::parse_vectors(const std::string &entry)
-  {
-    return parse_list<VectorCondition>(
-      entry,
-      [&](VectorCondition &condition, const std::string &text, const std::string &at) {
-        condition.rate = entry == "Velocity";
-        parse_components(text, dim, entry != "Traction", at, condition);
-      });
   }
 
 

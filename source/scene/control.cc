@@ -146,16 +146,9 @@ namespace PeriDeal
   template <int dim>
   void OutputControl<dim>::parse_points_of_output()
   {
-    const auto coordinates = [](const dealii::Point<dim> &p) {
-      std::vector<double> x(dim);
-      for (unsigned int d = 0; d < dim; ++d)
-        x[d] = p[d];
-      return x;
-    };
-
     probes.clear();
     for (const dealii::Point<dim> &p : parse_points<dim>(text("Probes"), where("Probes")))
-      probes.push_back(coordinates(p));
+      probes.emplace_back(p.begin_raw(), p.end_raw());
 
     line.clear();
     const std::vector<std::string> pieces = split_list(text("Line"), ';');
@@ -174,7 +167,7 @@ namespace PeriDeal
         dealii::Point<dim> p;
         for (unsigned int d = 0; d < dim; ++d)
           p[d] = i + 1 == n ? end[d] : start[d] + (end[d] - start[d]) * i / (n - 1.);
-        line.push_back(coordinates(p));
+        line.emplace_back(p.begin_raw(), p.end_raw());
       }
   }
 

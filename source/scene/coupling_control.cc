@@ -57,18 +57,6 @@ namespace PeriDeal
   }
 
 
-  std::string CouplingControl::zone_text() const
-  {
-    return text("Zone") != "auto" ? text("Zone") : follows_stretches() ? "follow" : "cracks: 1";
-  }
-
-
-  std::string CouplingControl::scheme_text() const
-  {
-    return text("Scheme");
-  }
-
-
   void CouplingControl::parse_zone()
   {
     const std::string &given = text("Zone");

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/bounding_box.h>
+
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/crack_geometry.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace PeriDeal
 {
@@ -23,35 +26,25 @@ namespace PeriDeal
      * side of the nodes the crack runs.
      */
     constexpr double edge = 1e-7;
-
-    /** Newell's vector: twice the area of a planar polygon times its right-hand normal. */
-    template <int dim>
-    Tensor<1, dim> doubled_area_vector(const std::vector<Point<dim>> &corners)
-    {
-      Tensor<1, dim> sum;
-      if constexpr (dim == 3)
-        for (std::size_t i = 0; i < corners.size(); ++i)
-          sum += cross_product_3d(corners[i] - corners[0],
-                                  corners[(i + 1) % corners.size()] - corners[0]);
-      return sum;
-    }
   } // namespace
+
+
+  Tensor<1, 3> doubled_area_vector(const std::vector<Point<3>> &corners)
+  {
+    Tensor<1, 3> sum;
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+      sum += cross_product_3d(corners[i] - corners[0], corners[i + 1] - corners[0]);
+    return sum;
+  }
 
 
   template <int dim>
   CrackGeometry<dim>::CrackGeometry(const std::vector<Point<dim>> &corners)
     : corner_points(corners)
-    , lowest(corners.front())
-    , highest(corners.front())
   {
-    for (const Point<dim> &p : corners)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          lowest[d]  = std::min(lowest[d], p[d]);
-          highest[d] = std::max(highest[d], p[d]);
-        }
-    size      = lowest.distance(highest);
-    tolerance = std::max(on_crack * size,
+    std::tie(lowest, highest) = BoundingBox<dim>(corners).get_boundary_points();
+    size                      = lowest.distance(highest);
+    tolerance                 = std::max(on_crack * size,
                          16. * std::numeric_limits<double>::epsilon() *
                            std::max(lowest.norm(), highest.norm()));
     closed.assign(corners.size(), false);
@@ -120,17 +113,22 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool CrackGeometry<dim>::separates(const Point<dim> &a, const Point<dim> &b) const
+  std::optional<Point<dim>> CrackGeometry<dim>::crossing(const Point<dim> &a,
+                                                         const Point<dim> &b) const
   {
     const double at_a = signed_distance(a), at_b = signed_distance(b);
     if ((at_a > 0.) == (at_b > 0.))
-      return false;
+      return {};
     // Always computed from the positive end, so that both ends of a bond come to the same answer.
-    const bool        from_a = at_a > 0.;
-    const Point<dim> &start = from_a ? a : b, &end = from_a ? b : a;
-    const double      at_start = from_a ? at_a : at_b, at_end = from_a ? at_b : at_a;
-    const Point<dim>  crossing = start + at_start / (at_start - at_end) * (end - start);
-    return plane_point_inside(crossing, false);
+    return at_a > 0. ? a + at_a / (at_a - at_b) * (b - a) : b + at_b / (at_b - at_a) * (a - b);
+  }
+
+
+  template <int dim>
+  bool CrackGeometry<dim>::separates(const Point<dim> &a, const Point<dim> &b) const
+  {
+    const auto place = crossing(a, b);
+    return place && plane_point_inside(*place, false);
   }
 
 
@@ -141,15 +139,11 @@ namespace PeriDeal
   {
     if (dim != 2)
       return separates(a, b) ? 1. : 0.;
-    const double at_a = signed_distance(a), at_b = signed_distance(b);
-    if ((at_a > 0.) == (at_b > 0.))
+    const auto place = crossing(a, b);
+    if (!place)
       return 0.;
-    const bool        from_a = at_a > 0.;
-    const Point<dim> &start = from_a ? a : b, &end = from_a ? b : a;
-    const double      at_start = from_a ? at_a : at_b, at_end = from_a ? at_b : at_a;
-    const Point<dim>  crossing = start + at_start / (at_start - at_end) * (end - start);
-    const double      along = (crossing - corner_points[0]) * first_axis, margin = edge * size;
-    double            part = 1.;
+    const double along = (*place - corner_points[0]) * first_axis, margin = edge * size;
+    double       part = 1.;
     for (unsigned int e = 0; e < 2; ++e)
       {
         const double behind = e == 0 ? along : content - along;

@@ -35,9 +35,9 @@ namespace PeriDeal
   {
     if (!cracks.change())
       return;
-    add_growth_events(step, end_time, time_step);
+    add_growth_events(step, time_step);
     if (cracks.transmission.depends_on_time())
-      add_transmission_events(end_time);
+      add_transmission_events();
     if (time_step > 0.)
       for (double &t : times)
         t = time_step * std::round(t / time_step);
@@ -52,14 +52,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  void CrackHistory<dim>::add_growth_events(const double step,
-                                            const double end_time,
-                                            const double time_step)
+  void CrackHistory<dim>::add_growth_events(const double step, const double time_step)
   {
-    std::vector<double> turns{0., end_time}; // when a tip starts, turns or stops
+    std::vector<double> turns{0., end}; // when a tip starts, turns or stops
     for (const CrackTip<dim> &tip : cracks->tips)
       for (const auto &[time, point] : tip.path)
-        if (time < end_time)
+        if (time < end)
           turns.push_back(time);
     std::sort(turns.begin(), turns.end());
     for (std::size_t k = 0; k + 1 < turns.size(); ++k)
@@ -73,7 +71,7 @@ namespace PeriDeal
               fastest = tip.speed(from);
               leader  = &tip;
             }
-        if (span <= same_time * end_time)
+        if (span <= same_time * end)
           continue;
         times.push_back(from);
         if (leader == nullptr)
@@ -115,7 +113,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void CrackHistory<dim>::refine_transmission(const double a, const double b, const double end_time)
+  void CrackHistory<dim>::refine_transmission(const double a, const double b)
   {
     const double middle = 0.5 * (a + b), there = checked_transmission(middle);
     const double change =
@@ -127,23 +125,23 @@ namespace PeriDeal
                     " events; give a smoother formula.");
     if (change > 0.)
       times.push_back(b); // what is constant needs no event but its end
-    if (change <= 0.5 * transmission_step || b - a < 1e-7 * end_time)
+    if (change <= 0.5 * transmission_step || b - a < 1e-7 * end)
       return;
-    refine_transmission(a, middle, end_time);
-    refine_transmission(middle, b, end_time);
+    refine_transmission(a, middle);
+    refine_transmission(middle, b);
   }
 
 
   template <int dim>
-  void CrackHistory<dim>::add_transmission_events(const double end_time)
+  void CrackHistory<dim>::add_transmission_events()
   {
     constexpr unsigned int n_samples = 128;
     for (unsigned int k = 0; k < n_samples; ++k)
       {
-        const double a = end_time * k / n_samples, b = end_time * (k + 1) / n_samples;
+        const double a = end * k / n_samples, b = end * (k + 1) / n_samples;
         checked_transmission(b);
         const std::size_t n_before = times.size();
-        refine_transmission(a, b, end_time);
+        refine_transmission(a, b);
         if (times.size() > n_before)
           times.push_back(a);
       }
@@ -163,10 +161,7 @@ namespace PeriDeal
   {
     if (times.empty())
       return cracks->change() ? 0.5 * end : t;
-    const auto   next  = std::upper_bound(times.begin(), times.end(), t + same_time * end);
-    const double until = next == times.end() ? end : *next,
-                 from  = next == times.begin() ? 0. : *(next - 1);
-    return 0.5 * (from + until);
+    return 0.5 * (begin_of_span(t) + std::min(next_event(t), end));
   }
 
 
@@ -175,21 +170,6 @@ namespace PeriDeal
   {
     const auto next = std::upper_bound(times.begin(), times.end(), t + same_time * end);
     return next == times.begin() ? 0. : *(next - 1);
-  }
-
-
-  template <int dim>
-  std::vector<CrackPiece<dim>> CrackHistory<dim>::pieces(const double t,
-                                                         const bool   cut_at_tips) const
-  {
-    return cracks->pieces(t, cut_at_tips);
-  }
-
-
-  template <int dim>
-  double CrackHistory<dim>::transmission(const double t) const
-  {
-    return cracks->transmission.value(Point<dim>(), t);
   }
 
 
@@ -212,19 +192,9 @@ namespace PeriDeal
   std::vector<BoundingBox<dim>> CrackHistory<dim>::changes(const double t_1, const double t_2) const
   {
     std::vector<BoundingBox<dim>> boxes;
-    const auto                    around = [](const std::vector<Point<dim>> &points) {
-      std::pair<Point<dim>, Point<dim>> corners(points[0], points[0]);
-      for (const Point<dim> &p : points)
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            corners.first[d]  = std::min(corners.first[d], p[d]);
-            corners.second[d] = std::max(corners.second[d], p[d]);
-          }
-      return BoundingBox<dim>(corners);
-    };
     if (transmission(t_1) != transmission(t_2))
       for (const CrackPiece<dim> &piece : pieces(t_2))
-        boxes.push_back(around(piece.corners));
+        boxes.emplace_back(piece.corners);
     for (const CrackTip<dim> &tip : cracks->tips)
       {
         std::vector<Point<dim>> way{tip.at(t_1)};
@@ -241,23 +211,9 @@ namespace PeriDeal
               for (const std::size_t step : {std::size_t(1), corners.size() - 1})
                 way.push_back(corners[(tip.corner + step) % corners.size()]);
             }
-        boxes.push_back(around(way));
+        boxes.emplace_back(way);
       }
     return boxes;
-  }
-
-
-  template <int dim>
-  bool CrackHistory<dim>::changes_ever() const
-  {
-    return cracks->change();
-  }
-
-
-  template <int dim>
-  bool CrackHistory<dim>::may_close() const
-  {
-    return !cracks->cracks.empty() && cracks->transmission.depends_on_time();
   }
 
 

@@ -3,6 +3,8 @@
 
 // Cracks that run along rows of nodes, and the lattice beside which they do not.
 
+#include <deal.II/base/bounding_box.h>
+
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/crack_geometry.h>
 #include <perideal/scene/lists.h>
@@ -68,21 +70,16 @@ namespace PeriDeal
       const double         shift = at_centers ? 0.5 : 0.;
       Tensor<1, dim>       h;
       std::array<int, dim> first{}, last{};
+      const auto [low, high] = BoundingBox<dim>(crack.corners()).get_boundary_points();
       for (unsigned int d = 0; d < dim; ++d)
         {
-          h[d]       = (domain.upper[d] - domain.lower[d]) / cells[d];
-          double low = crack.corners()[0][d], high = low;
-          for (const Point<dim> &p : crack.corners())
-            {
-              low  = std::min(low, p[d]);
-              high = std::max(high, p[d]);
-            }
+          h[d]              = (domain.upper[d] - domain.lower[d]) / cells[d];
           const auto number = [&](const double x) {
             return std::clamp((x - domain.lower[d]) / h[d] - shift, -1., cells[d] + 1.);
           };
-          first[d] = std::max(0, static_cast<int>(std::ceil(number(low) - 1e-6)));
+          first[d] = std::max(0, static_cast<int>(std::ceil(number(low[d]) - 1e-6)));
           last[d]  = std::min(static_cast<int>(cells[d] - (at_centers ? 1 : 0)),
-                             static_cast<int>(std::floor(number(high) + 1e-6)));
+                             static_cast<int>(std::floor(number(high[d]) + 1e-6)));
         }
       first[axis] = last[axis] = 0;
       unsigned int n_lines = 0, n_nodes = 0;

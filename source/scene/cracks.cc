@@ -48,9 +48,7 @@ namespace PeriDeal
             if (corners[i] == corners[j])
               return "has the same corner twice";
           }
-      Tensor<1, 3> normal; // twice the vector area
-      for (unsigned int i = 1; i + 1 < corners.size(); ++i)
-        normal += cross_product_3d(corners[i] - corners[0], corners[i + 1] - corners[0]);
+      Tensor<1, 3> normal = doubled_area_vector(corners);
       if (normal.norm() <= 1e-12 * size * size)
         return "has no area";
       normal /= normal.norm();
@@ -59,18 +57,18 @@ namespace PeriDeal
           return "is not planar";
       return "";
     }
-  } // namespace
 
 
-  namespace
-  {
-    const std::string disc_word = "disc";
+    const char *end_or_corner(const int dim)
+    {
+      return dim == 3 ? "corner" : "end point";
+    }
 
 
     bool is_disc(const std::string &piece)
     {
       const std::size_t colon = piece.find(':');
-      return colon != std::string::npos && trimmed(piece.substr(0, colon)) == disc_word;
+      return colon != std::string::npos && trimmed(piece.substr(0, colon)) == "disc";
     }
 
 
@@ -107,8 +105,7 @@ namespace PeriDeal
         {
           const double   angle = 2. * pi * k / n;
           const Point<3> p = center + radius * (std::cos(angle) * first + std::sin(angle) * second);
-          for (unsigned int d = 0; d < dim; ++d)
-            corners[k][d] = p[d];
+          corners[k]       = point_of<dim>(p.begin_raw());
         }
       return corners;
     }
@@ -171,48 +168,37 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Cracks<dim>::parse_segments()
+  void Cracks<dim>::parse_corners()
   {
-    if (text("Segments").empty())
-      return;
-    if (dim != 2)
-      error("Segments",
+    const std::string lines = "Segments", planes = "Polygons";
+    if (!text(lines).empty() && dim != 2)
+      error(lines,
             dim == 1 ? "cracks need 'Dimension' 2 or 3." :
                        "segments are cracks of 2D bodies; in 3D give 'Polygons'.");
-    const std::vector<Point<dim>> points = parse_points<dim>(text("Segments"), where("Segments"));
-    if (points.size() % 2 != 0)
-      error("Segments",
-            "each crack needs two points (start ; end), found " + std::to_string(points.size()) +
-              " points.");
+    const std::vector<Point<dim>> points = parse_points<dim>(text(lines), where(lines));
+    refuse(points.size() % 2 != 0,
+           lines,
+           "each crack needs two points (start ; end), found " + std::to_string(points.size()) +
+             " points.");
     for (unsigned int i = 0; i < points.size(); i += 2)
       cracks.push_back({points[i], points[i + 1]});
-  }
-
-
-  template <int dim>
-  void Cracks<dim>::parse_polygons()
-  {
-    if (text("Polygons").empty())
-      return;
-    if (dim != 3)
-      error("Polygons",
+    if (!text(planes).empty() && dim != 3)
+      error(planes,
             dim == 1 ? "cracks need 'Dimension' 2 or 3." :
                        "polygons are cracks of 3D bodies; in 2D give 'Segments'.");
-    for (const std::string &piece : split_list(text("Polygons"), '|'))
+    for (const std::string &piece : split_list(text(planes), '|'))
       {
         const std::vector<Point<dim>> corners = is_disc(piece) ?
-                                                  disc<dim>(piece, where("Polygons")) :
-                                                  parse_points<dim>(piece, where("Polygons"));
+                                                  disc<dim>(piece, where(planes)) :
+                                                  parse_points<dim>(piece, where(planes));
         const std::string name = crack_name(static_cast<unsigned int>(cracks.size()), corners);
-        if (corners.size() < 3)
-          error("Polygons",
-                name + " needs three or more corners, found " + std::to_string(corners.size()) +
-                  ".");
+        refuse(corners.size() < 3,
+               planes,
+               name + " needs three or more corners, found " + std::to_string(corners.size()) +
+                 ".");
         if constexpr (dim == 3)
-          {
-            const std::string fault = polygon_fault(corners);
-            refuse(!fault.empty(), "Polygons", name + " " + fault + ".");
-          }
+          if (const std::string fault = polygon_fault(corners); !fault.empty())
+            error(planes, name + " " + fault + ".");
         cracks.push_back(corners);
       }
   }
@@ -223,18 +209,28 @@ namespace PeriDeal
   {
     cracks.clear();
     tips.clear();
-    parse_segments();
-    parse_polygons();
+    parse_corners();
     SceneSection::parse();
     if (mesh == CrackMesh::automatic && physics != Physics::elasticity)
       mesh = CrackMesh::pairs; // of solids the scene decides (lay_cracks_on_faces())
     parse_conductance();
     parse_growth();
     parse_paths();
-    check_tips();
+    std::vector<double> stops; // of all tips
+    for (const CrackTip<dim> &tip : tips)
+      for (const auto &[time, point] : tip.path)
+        stops.push_back(time);
+    if (!stops.empty())
+      {
+        std::sort(stops.begin(), stops.end());
+        stops.push_back(stops.back() + 1.);
+        if (dim == 3)
+          check_polygons(stops);
+        else
+          check_turns(stops.back());
+      }
     for (unsigned int i = 0; i < cracks.size() && dim == 2; ++i)
-      if (cracks[i][0] == cracks[i][1] &&
-          std::none_of(tips.begin(), tips.end(), [&](const auto &tip) { return tip.crack == i; }))
+      if (cracks[i][0] == cracks[i][1] && !grows(i))
         error("Segments",
               crack_name(i, cracks[i]) + " has no length, and no end of it grows ('Growth').");
     if (physics != Physics::elasticity && conduct() &&
@@ -293,16 +289,42 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Cracks<dim>::check_inside(const Point<dim> &lower, const Point<dim> &upper) const
+  bool Cracks<dim>::grows(const unsigned int crack) const
+  {
+    return std::any_of(tips.begin(), tips.end(), [&](const CrackTip<dim> &tip) {
+      return tip.crack == crack;
+    });
+  }
+
+
+  template <int dim>
+  void Cracks<dim>::check_inside() const
   {
     for (unsigned int i = 0; i < cracks.size(); ++i)
+      if (clipped_to_box(cracks[i], lowest, highest).empty() && !grows(i))
+        error(dim == 2 ? "Segments" : "Polygons",
+              crack_name(i, cracks[i]) + " lies outside the body.");
+    const auto is_inside = [&](const Point<dim> &p) {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (p[d] < lowest[d] - 1e-9 * (highest[d] - lowest[d]) ||
+            p[d] > highest[d] + 1e-9 * (highest[d] - lowest[d]))
+          return false;
+      return true;
+    };
+    for (const CrackTip<dim> &tip : tips)
       {
-        const std::vector<Point<dim>> inside = clipped_to_box(cracks[i], lower, upper);
-        const bool                    grows =
-          std::any_of(tips.begin(), tips.end(), [&](const auto &tip) { return tip.crack == i; });
-        if (inside.empty() && !grows)
-          error(dim == 2 ? "Segments" : "Polygons",
-                crack_name(i, cracks[i]) + " lies outside the body.");
+        std::vector<double> times;
+        for (const auto &[time, point] : tip.path)
+          if (time < end_time)
+            times.push_back(time);
+        times.push_back(end_time);
+        for (const double t : times)
+          if (!is_inside(tip.at(t)))
+            tip_error(
+              tip,
+              "has left the body at t = " + number_text(t) + ", where it is at " +
+                point_text(tip.at(t)) +
+                ". Let it stop before: a fourth number in 'Growth' (3D: a fifth) is the time at which it does.");
       }
   }
 
@@ -328,15 +350,6 @@ namespace PeriDeal
       }
     return found;
   }
-
-
-  namespace
-  {
-    const char *end_or_corner(const int dim)
-    {
-      return dim == 3 ? "corner" : "end point";
-    }
-  } // namespace
 
 
   template <int dim>
@@ -380,11 +393,9 @@ namespace PeriDeal
                   " components of a velocity, and may name the time at which the tip stops.");
         const std::vector<double> x =
           parse_numbers(value, static_cast<unsigned int>(n_given), "numbers", where("Growth"));
-        Tensor<1, dim> velocity;
-        for (unsigned int d = 0; d < dim; ++d)
-          velocity[d] = x[d + 1];
-        const Point<dim> start = cracks[tip.crack][tip.corner];
-        tip.path               = {{x[0], start}};
+        const Tensor<1, dim> velocity = point_of<dim>(x.data() + 1);
+        const Point<dim>     start    = cracks[tip.crack][tip.corner];
+        tip.path                      = {{x[0], start}};
         refuse(x[0] < 0., "Growth", "'" + item + "' starts before t = 0.");
         refuse(velocity.norm() == 0., "Growth", "'" + item + "' has no velocity.");
         if (n_given == dim + 2)
@@ -428,9 +439,7 @@ namespace PeriDeal
           {
             const std::vector<double> x =
               parse_numbers(stop, dim + 1, "numbers (a time and a position)", where("Paths"));
-            Point<dim> p;
-            for (unsigned int d = 0; d < dim; ++d)
-              p[d] = x[d + 1];
+            const Point<dim> p = point_of<dim>(x.data() + 1);
             if (tip.path.empty() && p.distance(start) > 1e-9 * (1. + start.norm()))
               error("Paths",
                     "the path of " + std::string(end_or_corner(dim)) + " " + number +
@@ -459,24 +468,6 @@ namespace PeriDeal
       number += cracks[crack].size();
     error(tip.by_path ? "Paths" : "Growth",
           std::string(end_or_corner(dim)) + " " + std::to_string(number) + " " + what);
-  }
-
-
-  template <int dim>
-  void Cracks<dim>::check_tips() const
-  {
-    std::vector<double> stops; // of all tips
-    for (const CrackTip<dim> &tip : tips)
-      for (const auto &[time, point] : tip.path)
-        stops.push_back(time);
-    if (stops.empty())
-      return;
-    std::sort(stops.begin(), stops.end());
-    stops.push_back(stops.back() + 1.);
-    if (dim == 3)
-      check_polygons(stops);
-    else
-      check_turns(stops.back());
   }
 
 
@@ -532,21 +523,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool Cracks<dim>::change() const
-  {
-    return !tips.empty() || (!cracks.empty() && transmission.depends_on_time());
-  }
-
-
-  template <int dim>
-  bool Cracks<dim>::conduct() const
-  {
-    return !transmission.is_constant() || transmission.value(Point<dim>()) > 0. ||
-           contact_conductance > 0.;
-  }
-
-
-  template <int dim>
   std::vector<CrackPiece<dim>> Cracks<dim>::pieces(const double t, const bool cut_at_tips) const
   {
     auto pieces = crack_pieces(cracks, tips, t);
@@ -565,58 +541,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool Cracks<dim>::cuts_bonds_at_tips(const SurfaceCorrection correction) const
-  {
-    return through_tips == ThroughTips::cut ||
-           (through_tips == ThroughTips::automatic && correction != SurfaceCorrection::energy);
-  }
-
-
-  template <int dim>
-  void Cracks<dim>::set_box(const Point<dim> &lower, const Point<dim> &upper)
-  {
-    lowest  = lower;
-    highest = upper;
-    in_box  = true;
-  }
-
-
-  template <int dim>
   bool Cracks<dim>::on_side(const Point<dim> &p, const unsigned int side) const
   {
     const unsigned int d = side / 2;
     const double       x = side % 2 == 0 ? lowest[d] : highest[d];
     return std::abs(p[d] - x) <= 1e-9 * (highest[d] - lowest[d]);
-  }
-
-
-  template <int dim>
-  void Cracks<dim>::check_tips_inside(const Point<dim> &lower,
-                                      const Point<dim> &upper,
-                                      const double      end_time) const
-  {
-    const auto is_inside = [&](const Point<dim> &p) {
-      for (unsigned int d = 0; d < dim; ++d)
-        if (p[d] < lower[d] - 1e-9 * (upper[d] - lower[d]) ||
-            p[d] > upper[d] + 1e-9 * (upper[d] - lower[d]))
-          return false;
-      return true;
-    };
-    for (const CrackTip<dim> &tip : tips)
-      {
-        std::vector<double> times;
-        for (const auto &[time, point] : tip.path)
-          if (time < end_time)
-            times.push_back(time);
-        times.push_back(end_time);
-        for (const double t : times)
-          if (!is_inside(tip.at(t)))
-            tip_error(
-              tip,
-              "has left the body at t = " + number_text(t) + ", where it is at " +
-                point_text(tip.at(t)) +
-                ". Let it stop before: a fourth number in 'Growth' (3D: a fifth) is the time at which it does.");
-      }
   }
 
 

@@ -108,8 +108,7 @@ namespace PeriDeal
       const bool              coupled    = runs(scene, ModelKind::coupled);
       if (!scene.deforms || cracks.cracks.empty() || cracks.change() ||
           cracks.through_tips == ThroughTips::in_part || !domain.is_box() || domain.has_voids() ||
-          domain.has_extra_layers() || domain.coarsening.times > 0 ||
-          scene.material.fracture_energy || scene.material.critical_stretch)
+          domain.has_extra_layers() || domain.coarsening.times > 0 || scene.material.breaks())
         return false;
       // Of two nodes at one place neither knows of which side a formula is meant to be.
       if (!scene.elasticity.temperature_change.is_constant() ||

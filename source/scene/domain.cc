@@ -98,7 +98,7 @@ namespace PeriDeal
     declare(holes.shape, "Hole shape", "circle", {"circle", "square"}) = "Shape of the hole.";
     declare(holes.angle, "Hole angle", "0", "degrees") =
       "A square hole is turned by this angle, counterclockwise.";
-    declare(mesh_file, "Mesh file", "") =
+    declare(files.mesh, "Mesh file", "") =
       "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory or else to the "
       "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.";
     declare("Image", EntryType::text) =
@@ -150,19 +150,6 @@ namespace PeriDeal
                  p[d] <= extra.body_upper[d] + slack;
       }
     return inside;
-  }
-
-
-  template <int dim>
-  void Domain<dim>::require_lattice(const bool         chosen,
-                                    const std::string &where,
-                                    const std::string &choice) const
-  {
-    if (chosen && !has_lattice())
-      entry_error(
-        where,
-        choice +
-          " needs a lattice of cells ('Shape' in section 'Domain' = box or plate with hole), not a mesh file.");
   }
 
 
@@ -336,7 +323,7 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::use_own_mesh()
   {
-    own_mesh = true;
+    files.own_mesh = true;
     set("Shape", "mesh file");
   }
 
@@ -362,7 +349,16 @@ namespace PeriDeal
                 ") must be greater than that of 'Lower corner' (" + number_text(lower[d]) + ").");
     if (shape != Shape::image)
       {
-        refuse_image_entries();
+        for (const std::string entry : {"Image",
+                                        "Image colors",
+                                        "Color tolerance",
+                                        "Pixels per cell",
+                                        "Cells per pixel",
+                                        "Pixel size",
+                                        "Islands"})
+          refuse(is_given(entry),
+                 entry,
+                 "is given, but 'Shape' is '" + text("Shape") + "', not 'image'.");
         parse_cells();
       }
     parse_extra_layers();
@@ -370,9 +366,9 @@ namespace PeriDeal
     holes.has_one = shape == Shape::plate_with_hole;
     parse_listed_holes();
     parse_fine_part();
-    if (shape == Shape::mesh_file && mesh_file.empty() && !own_mesh)
+    if (shape == Shape::mesh_file && files.mesh.empty() && !files.own_mesh)
       error("Mesh file", "is empty, but 'Shape' is 'mesh file'.");
-    if (shape != Shape::mesh_file && !mesh_file.empty())
+    if (shape != Shape::mesh_file && !files.mesh.empty())
       error("Mesh file", "is given, but 'Shape' is '" + text("Shape") + "', not 'mesh file'.");
   }
 
@@ -407,37 +403,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Domain<dim>::refuse_image_entries() const
-  {
-    for (const std::string entry : {"Image",
-                                    "Image colors",
-                                    "Color tolerance",
-                                    "Pixels per cell",
-                                    "Cells per pixel",
-                                    "Pixel size",
-                                    "Islands"})
-      if (is_given(entry))
-        error(entry, "is given, but 'Shape' is '" + text("Shape") + "', not 'image'.");
-  }
-
-
-  template <int dim>
-  void Domain<dim>::set_size_of_image()
-  {
-    if (text("Pixel size").empty())
-      return;
-    const double size = parse_number(text("Pixel size"), where("Pixel size"));
-    if (!(size > 0.))
-      error("Pixel size", "found " + text("Pixel size") + ", needs a length greater than 0.");
-    if (is_given("Upper corner"))
-      error("Pixel size", "'Upper corner' is given, too: give one of the two.");
-    const double cell = size * count("Pixels per cell") / count("Cells per pixel");
-    for (unsigned int d = 0; d < dim; ++d)
-      upper[d] = lower[d] + cell * cells[d];
-  }
-
-
-  template <int dim>
   void Domain<dim>::parse_image()
   {
     refuse(dim != 2, "Shape", "'image' needs 'Dimension' 2.");
@@ -455,17 +420,17 @@ namespace PeriDeal
         error(entry, "found " + text(entry) + ", needs a number from 1 to 1000.");
 
     const std::filesystem::path beside = std::filesystem::path(files.folder) / text("Image");
-    image_file = std::filesystem::exists(text("Image")) || !std::filesystem::exists(beside) ?
-                   text("Image") :
-                   beside.string();
-    if (!std::filesystem::exists(image_file))
+    files.image = std::filesystem::exists(text("Image")) || !std::filesystem::exists(beside) ?
+                    text("Image") :
+                    beside.string();
+    if (!std::filesystem::exists(files.image))
       error("Image",
             "there is no file '" + text("Image") + "'" +
               places_looked_at(text("Image"), files.folder));
     Picture picture;
     try
       {
-        picture = read_picture(image_file, files.communicator);
+        picture = read_picture(files.image, files.communicator);
       }
     catch (const UserError &fault)
       {
@@ -494,11 +459,22 @@ namespace PeriDeal
               " pixels, more than memory can hold.");
     const ImageColors colors(text("Image colors"), tolerance, where("Image colors"));
     image = std::make_shared<PhaseMap>(
-      make_phase_map(picture, colors, block, count("Cells per pixel"), where("Image colors")));
+      make_phase_map(picture, colors, block, n_parts, where("Image colors")));
     for (unsigned int d = 0; d < dim; ++d)
       cells[d] = image->n_cells[std::min(d, 1u)];
     require_countable("Image");
-    set_size_of_image();
+    if (!text("Pixel size").empty())
+      {
+        const double size = parse_number(text("Pixel size"), where("Pixel size"));
+        refuse(!(size > 0.),
+               "Pixel size",
+               "found " + text("Pixel size") + ", needs a length greater than 0.");
+        refuse(is_given("Upper corner"),
+               "Pixel size",
+               "'Upper corner' is given, too: give one of the two.");
+        for (unsigned int d = 0; d < dim; ++d)
+          upper[d] = lower[d] + size * block / n_parts * cells[d];
+      }
     for (unsigned int d = 0; d < dim && d < 2; ++d)
       {
         image->lower[d]   = lower[d];
@@ -531,11 +507,10 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse_extra_layers()
   {
-    extra.body_lower = lower;
-    extra.body_upper = upper;
-    extra.layers     = parse_layers<dim>(text("Extra layers"), where("Extra layers"));
-    const bool any =
-      std::any_of(extra.layers.begin(), extra.layers.end(), [](const auto n) { return n > 0; });
+    extra.body_lower        = lower;
+    extra.body_upper        = upper;
+    extra.layers            = parse_layers<dim>(text("Extra layers"), where("Extra layers"));
+    const bool        any   = has_extra_layers();
     const std::string phase = text("Extra layers phase");
     if (!phase.empty() && (!any || !image))
       error("Extra layers phase",
@@ -570,13 +545,6 @@ namespace PeriDeal
     return std::any_of(extra.layers.begin(), extra.layers.end(), [](const auto n) {
       return n > 0;
     });
-  }
-
-
-  template <int dim>
-  bool Domain<dim>::shows(const Point<dim> &p) const
-  {
-    return !has_extra_layers() || contains(p);
   }
 
 

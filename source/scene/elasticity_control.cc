@@ -64,24 +64,6 @@ namespace PeriDeal
   }
 
 
-  bool ElasticityControl::has_full_kinematics() const
-  {
-    return kinematics == Kinematics::full;
-  }
-
-
-  bool ElasticityControl::is_static() const
-  {
-    return solver != ElasticSolver::dynamics;
-  }
-
-
-  const std::string &ElasticityControl::solver_name() const
-  {
-    return text("Solver");
-  }
-
-
   void ElasticityControl::parse(const Physics physics, const unsigned int dim)
   {
     computes_temperature = text("Temperature change") == "computed";

@@ -45,19 +45,6 @@ namespace PeriDeal
     DeferredFormulaErrors *collector = nullptr;
 
 
-    /** A number and nothing else. Compiling a formula takes a hundred times as long. */
-    std::optional<double> plain_number(const std::string &text)
-    {
-      if (text.find_first_not_of("0123456789.eE+-") != std::string::npos)
-        return {};
-      char        *end   = nullptr;
-      const double value = std::strtod(text.c_str(), &end);
-      if (end == text.c_str() || *end != '\0')
-        return {};
-      return value;
-    }
-
-
     // What users of deal.II's FunctionParser find beyond muparser's own functions, with the same
     // meaning
     double if_then_else(const double condition, const double a, const double b)
@@ -85,17 +72,17 @@ namespace PeriDeal
       parser.DefineFun("if", if_then_else);
       parser.DefineOprt("|", bar_or, 1);
       parser.DefineOprt("&", bar_and, 2);
-      parser.DefineFun("int", static_cast<mu::fun_type1>([](double v) { return std::trunc(v); }));
-      parser.DefineFun("ceil", static_cast<mu::fun_type1>([](double v) { return std::ceil(v); }));
-      parser.DefineFun("floor", static_cast<mu::fun_type1>([](double v) { return std::floor(v); }));
-      parser.DefineFun("sec",
-                       static_cast<mu::fun_type1>([](double v) { return 1. / std::cos(v); }));
-      parser.DefineFun("csc",
-                       static_cast<mu::fun_type1>([](double v) { return 1. / std::sin(v); }));
-      parser.DefineFun("cot",
-                       static_cast<mu::fun_type1>([](double v) { return 1. / std::tan(v); }));
-      parser.DefineFun("erf", static_cast<mu::fun_type1>([](double v) { return std::erf(v); }));
-      parser.DefineFun("erfc", static_cast<mu::fun_type1>([](double v) { return std::erfc(v); }));
+      const std::pair<const char *, mu::fun_type1> functions[] = {
+        {"int", [](double v) { return std::trunc(v); }},
+        {"ceil", [](double v) { return std::ceil(v); }},
+        {"floor", [](double v) { return std::floor(v); }},
+        {"sec", [](double v) { return 1. / std::cos(v); }},
+        {"csc", [](double v) { return 1. / std::sin(v); }},
+        {"cot", [](double v) { return 1. / std::tan(v); }},
+        {"erf", [](double v) { return std::erf(v); }},
+        {"erfc", [](double v) { return std::erfc(v); }}};
+      for (const auto &[name, function] : functions)
+        parser.DefineFun(name, function);
       parser.DefineFun("pow", static_cast<mu::fun_type2>([](double a, double b) {
                          return std::pow(a, b);
                        }));
@@ -300,6 +287,7 @@ namespace PeriDeal
   {
     if (formula.empty())
       entry_error(where, "is empty, needs a number or a formula of " + variables + ".");
+    // Compiling a formula takes a hundred times as long.
     if (const std::optional<double> number = plain_number(formula);
         number && std::isfinite(*number))
       {

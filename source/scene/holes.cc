@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/bounding_box.h>
+
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/holes.h>
 #include <perideal/scene/lists.h>
@@ -101,14 +103,7 @@ namespace PeriDeal
     if (corners.empty())
       return {Point<2>(center[0] - radius, center[1] - radius),
               Point<2>(center[0] + radius, center[1] + radius)};
-    std::pair<Point<2>, Point<2>> box(corners[0], corners[0]);
-    for (const Point<2> &p : corners)
-      for (unsigned int d = 0; d < 2; ++d)
-        {
-          box.first[d]  = std::min(box.first[d], p[d]);
-          box.second[d] = std::max(box.second[d], p[d]);
-        }
-    return box;
+    return BoundingBox<2>(corners).get_boundary_points();
   }
 
 

@@ -21,12 +21,6 @@ namespace PeriDeal
   {
     using Offset = std::array<int, 2>;
 
-    bool is_elastic(const Scene<2> &scene)
-    {
-      return scene.general.physics == Physics::elasticity;
-    }
-
-
     std::string percent(const double share)
     {
       return rounded_text(100. * share) + " %";
@@ -37,7 +31,7 @@ namespace PeriDeal
     double reach_of_bonds(const Scene<2> &scene)
     {
       const Tensor<1, 2> h = scene.domain.spacing();
-      return scene.peridynamics.volume_fraction == VolumeFraction::linear ?
+      return scene.peridynamics.sampling.volume_fraction == VolumeFraction::linear ?
                (scene.horizon() + 0.5 * std::min(h[0], h[1])) * (1. - 1e-9) :
                scene.horizon() * (1. + 1e-9);
     }
@@ -74,7 +68,7 @@ namespace PeriDeal
     {
       const auto         &conditions = scene.boundary_conditions;
       std::array<bool, 2> held{{false, false}};
-      if (is_elastic(scene))
+      if (scene.deforms)
         {
           for (const VectorCondition &condition : conditions.displacement)
             if (conditions.side_of(condition.id) == side)
@@ -143,7 +137,7 @@ namespace PeriDeal
 
       bool holds(const ImagePart &part) const
       {
-        if (!is_elastic(scene))
+        if (!scene.deforms)
           return any_value(part);
         const bool centers = scene.domain.has_nodes_at_centers();
         const bool pd      = runs(scene, ModelKind::peridynamics),
@@ -342,9 +336,8 @@ namespace PeriDeal
     {
       Domain<2> &domain     = scene.domain;
       PhaseMap  &map        = *domain.image;
-      const bool determined = is_elastic(scene) ? !scene.elasticity.is_static() :
-                                                  !scene.time.steady;
-      if (domain.islands.rule == IslandRule::pin && !is_elastic(scene))
+      const bool determined = scene.deforms ? !scene.elasticity.is_static() : !scene.time.steady;
+      if (domain.islands.rule == IslandRule::pin && !scene.deforms)
         entry_error(domain.where("Islands"), "'pin' is for 'Physics = elasticity'; use 'remove'.");
       if ((determined && domain.islands.rule != IslandRule::remove) || !map.has_voids())
         return;
@@ -355,9 +348,8 @@ namespace PeriDeal
       if (domain.islands.rule == IslandRule::error)
         entry_error(domain.where("Islands"),
                     "no side holds " + parts + " of the body in the image (" + what + "), whose " +
-                      (is_elastic(scene) ? "displacement" : "steady state") +
-                      " is not determined. Use '" +
-                      (is_elastic(scene) ? "remove' or 'pin" : "remove") +
+                      (scene.deforms ? "displacement" : "steady state") +
+                      " is not determined. Use '" + (scene.deforms ? "remove' or 'pin" : "remove") +
                       "', or give conditions on a side that each part touches.");
       if (2 * found.n_cells > found.n_solid && domain.islands.rule == IslandRule::remove)
         entry_error(domain.where("Islands"),

@@ -125,16 +125,6 @@ namespace PeriDeal
     }
 
 
-    template <int dim>
-    Point<dim> to_point(const Place &place)
-    {
-      Point<dim> p;
-      for (unsigned int d = 0; d < dim; ++d)
-        p[d] = place[d];
-      return p;
-    }
-
-
     /** The longest lines that edges make, each from an end or a place where three meet. */
     std::vector<std::vector<Place>> lines_of(const std::vector<std::vector<Place>> &edges)
     {
@@ -171,8 +161,8 @@ namespace PeriDeal
     Tensor<1, 3> normal_of(const std::vector<Place> &corners)
     {
       const Tensor<1, 3> normal =
-        cross_product_3d(to_point<3>(corners[2]) - to_point<3>(corners[0]),
-                         to_point<3>(corners[3]) - to_point<3>(corners[1]));
+        cross_product_3d(point_of<3>(corners[2].data()) - point_of<3>(corners[0].data()),
+                         point_of<3>(corners[3].data()) - point_of<3>(corners[1].data()));
       return normal / normal.norm();
     }
 
@@ -180,8 +170,8 @@ namespace PeriDeal
     /** Whether a point is in the plane of a face, as accurately as files have it. */
     bool lies_in_plane(const std::vector<Place> &face, const Place &p)
     {
-      const Tensor<1, 3> way  = to_point<3>(p) - to_point<3>(face[0]);
-      const double       size = to_point<3>(face[2]).distance(to_point<3>(face[0]));
+      const Tensor<1, 3> way  = point_of<3>(p.data()) - point_of<3>(face[0].data());
+      const double       size = point_of<3>(face[2].data()).distance(point_of<3>(face[0].data()));
       return std::abs(way * normal_of(face)) <= 1e-9 * std::max(size, way.norm());
     }
 
@@ -193,8 +183,10 @@ namespace PeriDeal
       const std::size_t  n = loop.size();
       for (std::size_t i = 0; i < n; ++i)
         {
-          const Tensor<1, 3> before = to_point<3>(loop[i]) - to_point<3>(loop[(i + n - 1) % n]),
-                             next   = to_point<3>(loop[(i + 1) % n]) - to_point<3>(loop[i]);
+          const Tensor<1, 3> before = point_of<3>(loop[i].data()) -
+                                      point_of<3>(loop[(i + n - 1) % n].data()),
+                             next =
+                               point_of<3>(loop[(i + 1) % n].data()) - point_of<3>(loop[i].data());
           if ((before / before.norm() - next / next.norm()).norm() > 1e-12)
             corners.push_back(loop[i]);
         }
@@ -265,9 +257,9 @@ namespace PeriDeal
     BoundaryConditions<dim> &conditions = scene.boundary_conditions;
     conditions.physical_names.clear();
     conditions.parts.clear();
-    if (domain.mesh_file.empty())
+    if (domain.files.mesh.empty())
       return groups;
-    groups                    = read_mesh_groups(domain.mesh_file,
+    groups                    = read_mesh_groups(domain.files.mesh,
                               domain.files.folder,
                               dim,
                               !scene.cracks.text("Interfaces").empty(),
@@ -297,7 +289,7 @@ namespace PeriDeal
     const std::vector<std::string> names  = split_list(cracks.text(entry), ';');
     if (names.empty())
       return;
-    cracks.refuse(scene.domain.mesh_file.empty(),
+    cracks.refuse(scene.domain.files.mesh.empty(),
                   entry,
                   "names groups of a mesh file, but 'Shape' in section 'Domain' is another.");
     cracks.refuse(dim == 1, entry, "cracks need 'Dimension' 2 or 3.");
@@ -346,7 +338,7 @@ namespace PeriDeal
           {
             std::vector<Point<dim>> crack;
             for (const Place &corner : piece)
-              crack.push_back(to_point<dim>(corner));
+              crack.push_back(point_of<dim>(corner.data()));
             cracks.cracks.push_back(crack);
           }
       }

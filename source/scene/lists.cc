@@ -89,18 +89,26 @@ namespace PeriDeal
   }
 
 
+  std::optional<double> plain_number(const std::string &text)
+  {
+    // strtod also takes hexadecimal numbers, inf and nan, which a scene does not
+    if (text.find_first_not_of("0123456789+-.eE") != std::string::npos)
+      return {};
+    char        *end   = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return end == text.c_str() || *end != '\0' ? std::optional<double>() : value;
+  }
+
+
   double parse_number(const std::string &text, const std::string &where)
   {
-    const std::string word  = trimmed(text);
-    char             *end   = nullptr;
-    const double      value = std::strtod(word.c_str(), &end);
-    // strtod also takes hexadecimal numbers, inf and nan, which a scene does not
-    if (word.empty() || *end != '\0' ||
-        word.find_first_not_of("0123456789+-.eE") != std::string::npos)
+    const std::string           word  = trimmed(text);
+    const std::optional<double> value = plain_number(word);
+    if (!value)
       entry_error(where, word.empty() ? "a number is missing." : "'" + word + "' is not a number.");
-    if (!std::isfinite(value))
+    if (!std::isfinite(*value))
       entry_error(where, "'" + word + "' is too large for a number.");
-    return value;
+    return *value;
   }
 
 
@@ -154,12 +162,8 @@ namespace PeriDeal
   template <int dim>
   dealii::Point<dim> parse_point(const std::string &text, const std::string &where)
   {
-    const std::vector<double> x =
-      parse_numbers(text, dim, dim == 1 ? "coordinate" : "coordinates", where);
-    dealii::Point<dim> p;
-    for (unsigned int d = 0; d < dim; ++d)
-      p[d] = x[d];
-    return p;
+    return point_of<dim>(
+      parse_numbers(text, dim, dim == 1 ? "coordinate" : "coordinates", where).data());
   }
 
 

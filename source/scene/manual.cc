@@ -2,12 +2,13 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/utilities.h>
 
 #include <perideal/scene/lists.h>
 #include <perideal/scene/scene.h>
 
-#include <algorithm>
-#include <cctype>
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <sstream>
 
 namespace PeriDeal
@@ -16,16 +17,6 @@ namespace PeriDeal
 
   namespace
   {
-    /** A text that does not break a row of a Markdown table. */
-    std::string cell(const std::string &text)
-    {
-      std::string result;
-      for (const char c : text)
-        result += c == '|' ? std::string("\\|") : std::string(1, c);
-      return result;
-    }
-
-
     std::string markdown(const std::vector<SceneSection *> &sections)
     {
       std::ostringstream out;
@@ -40,9 +31,13 @@ namespace PeriDeal
           out << "\n## " << (section->name().empty() ? "Outside all sections" : section->name())
               << "\n\n| Entry | Type | Default | Unit | Meaning |\n|---|---|---|---|---|\n";
           for (const Entry &entry : section->entries())
-            out << "| " << entry.name << " | " << cell(type_text(entry)) << " | "
-                << (entry.default_text.empty() ? "" : "`" + cell(entry.default_text) + "`") << " | "
-                << entry.unit << " | " << cell(entry.documentation) << " |\n";
+            out << "| " << entry.name << " | "
+                << Utilities::replace_in_string(type_text(entry), "|", "\\|") << " | "
+                << (entry.default_text.empty() ?
+                      "" :
+                      "`" + Utilities::replace_in_string(entry.default_text, "|", "\\|") + "`")
+                << " | " << entry.unit << " | "
+                << Utilities::replace_in_string(entry.documentation, "|", "\\|") << " |\n";
         }
       return out.str();
     }
@@ -81,15 +76,6 @@ namespace PeriDeal
     }
 
 
-    bool same_letters(const std::string &a, const std::string &b)
-    {
-      return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
-               return std::tolower(static_cast<unsigned char>(x)) ==
-                      std::tolower(static_cast<unsigned char>(y));
-             });
-    }
-
-
     /**
      * What is known of an entry, of `Section/Entry`, or of all entries of a section; empty if there
      * is no such name.
@@ -99,8 +85,8 @@ namespace PeriDeal
       std::string text;
       for (const SceneSection *const section : sections)
         for (const Entry &entry : section->entries())
-          if (same_letters(entry.name, name) || same_letters(section->name(), name) ||
-              same_letters(section->name() + "/" + entry.name, name))
+          if (boost::iequals(entry.name, name) || boost::iequals(section->name(), name) ||
+              boost::iequals(section->name() + "/" + entry.name, name))
             text += (text.empty() ? "" : "\n") + plain_text(*section, entry);
       return text;
     }

@@ -97,12 +97,6 @@ namespace PeriDeal
   }
 
 
-  bool Material::uniform_conductivity() const
-  {
-    return conductivity.is_constant();
-  }
-
-
   template <int dim>
   double Material::storage(const dealii::Point<dim> &p, const double temperature) const
   {
@@ -122,20 +116,16 @@ namespace PeriDeal
   }
 
 
-  bool Material::may_vanish(const std::string &entry, const Physics physics) const
-  {
-    const bool capacity = entry == "Heat capacity";
-    return (capacity && (physics == Physics::electricity || physics == Physics::elasticity)) ||
-           (!needs_storage && (capacity || entry == "Density"));
-  }
-
-
   Expression Material::read(const std::string &entry, const Physics physics) const
   {
+    const bool capacity   = entry == "Heat capacity",
+               may_vanish = (capacity &&
+                             (physics == Physics::electricity || physics == Physics::elasticity)) ||
+                            (!phases.needs_storage && (capacity || entry == "Density"));
     return material_formula(text(entry),
                             material_entry(entry),
                             physics == Physics::elasticity,
-                            may_vanish(entry, physics),
+                            may_vanish,
                             where(entry));
   }
 
@@ -231,13 +221,9 @@ namespace PeriDeal
                        const unsigned int                     dim,
                        const PlaneState                       plane,
                        const std::shared_ptr<const PhaseMap> &image,
-                       const bool                             storage_needed)
+                       const bool                             needs_storage)
   {
-    needs_storage = storage_needed;
-    phases.parse(physics, image, [storage_needed, physics](const std::string &entry) {
-      return (!storage_needed && (entry == "Density" || entry == "Heat capacity")) ||
-             (physics == Physics::elasticity && entry == "Heat capacity");
-    });
+    phases.parse(physics, image, needs_storage);
     const auto property = [&](const std::string &entry) {
       return phases.property(entry, read(entry, physics));
     };
@@ -293,7 +279,7 @@ namespace PeriDeal
 
   void Material::require_storage()
   {
-    needs_storage                         = true;
+    phases.needs_storage                  = true;
     const std::vector<std::string> &names = phases.all().names;
     for (const auto &[entry, property] :
          {std::make_pair("Density", &density), std::make_pair("Heat capacity", &heat_capacity)})
@@ -379,25 +365,29 @@ namespace PeriDeal
   } // namespace
 
 
-  std::string Material::fault_of_moduli(const double value_a, const double value_b) const
+  bool Material::GivenModuli::are_uniform() const
   {
-    const bool second_is_poisson = given_moduli.which[1] == Modulus::poisson;
+    return properties[0].is_constant() && properties[1].is_constant();
+  }
+
+
+  std::string Material::GivenModuli::fault(const double value_a, const double value_b) const
+  {
+    const bool second_is_poisson = which[1] == Modulus::poisson;
     for (const double value : {value_a, second_is_poisson ? 1. : value_b})
       if (!(value > 0.))
         return "found " + number_text(value) + ", needs a value greater than 0.";
-    const double poisson =
-      poisson_from(given_moduli.which[0], value_a, given_moduli.which[1], value_b);
-    const std::string found =
-      second_is_poisson ?
-        "found " + number_text(value_b) + ", which" :
-        name_of(given_moduli.which[0]) + " " + number_text(value_a) + " and " +
-          name_of(given_moduli.which[1]) + " " + number_text(value_b) +
-          " contradict each other: the Poisson ratio would be " + number_text(poisson) + ", and it";
-    if (!(poisson > -1. && (given_moduli.may_be_incompressible ? poisson <= 0.5 : poisson < 0.5)))
+    const double      poisson = poisson_from(which[0], value_a, which[1], value_b);
+    const std::string found   = second_is_poisson ?
+                                  "found " + number_text(value_b) + ", which" :
+                                  name_of(which[0]) + " " + number_text(value_a) + " and " +
+                                  name_of(which[1]) + " " + number_text(value_b) +
+                                  " contradict each other: the Poisson ratio would be " +
+                                  number_text(poisson) + ", and it";
+    if (!(poisson > -1. && (may_be_incompressible ? poisson <= 0.5 : poisson < 0.5)))
       return found + " has to be greater than -1 and " +
-             (given_moduli.may_be_incompressible ? "at most 0.5." : "less than 0.5.");
-    const Moduli moduli =
-      moduli_from(given_moduli.which[0], value_a, given_moduli.which[1], value_b);
+             (may_be_incompressible ? "at most 0.5." : "less than 0.5.");
+    const Moduli moduli = moduli_from(which[0], value_a, which[1], value_b);
     if (!(moduli.shear > 0.))
       return found + " leaves no shear modulus; give 'Young modulus' with it, or less than 0.5.";
     return "";
@@ -406,25 +396,25 @@ namespace PeriDeal
 
   void Material::parse_moduli(const unsigned int dim, const PlaneState plane)
   {
-    given_moduli.may_be_incompressible = dim == 1 || (dim == 2 && plane == PlaneState::stress);
-    std::vector<std::string> given;
+    given.may_be_incompressible = dim == 1 || (dim == 2 && plane == PlaneState::stress);
+    std::vector<std::string> names;
     std::vector<Modulus>     which;
     for (unsigned int k = 0; k < modulus_names.size(); ++k)
       if (!text(modulus_names[k]).empty())
         {
-          given.push_back(modulus_names[k]);
+          names.push_back(modulus_names[k]);
           which.push_back(static_cast<Modulus>(k));
         }
     const bool        bar = dim == 1 && which.size() == 1 && which[0] == Modulus::young;
     const std::string two =
       "needs exactly two of 'Bulk modulus', 'Shear modulus', 'Young modulus' and 'Poisson ratio'";
     if (which.size() > 2)
-      error(given.back(),
-            "is one of " + std::to_string(which.size()) + " (" + quoted(given) +
+      error(names.back(),
+            "is one of " + std::to_string(which.size()) + " (" + quoted(names) +
               "); 'Physics = elasticity' " + two + ".");
     if (which.size() < 2 && !bar)
-      error(given.empty() ? "Young modulus" : given.front(),
-            (given.empty() ? "is empty, and so are the other moduli" : "is the only one") +
+      error(names.empty() ? "Young modulus" : names.front(),
+            (names.empty() ? "is empty, and so are the other moduli" : "is the only one") +
               std::string("; 'Physics = elasticity' ") + two +
               (dim == 1 ? ", or for a bar 'Young modulus' alone." : "."));
     if (bar)
@@ -432,30 +422,30 @@ namespace PeriDeal
 
     for (unsigned int k = 0; k < 2; ++k)
       {
-        given_moduli.which[k]  = which[k];
+        given.which[k]         = which[k];
         const Expression value = bar && k == 1 ? Expression(0.) :
                                                  read(name_of(which[k]), Physics::elasticity);
-        given_moduli.values[k] = phases.property(name_of(which[k]), value);
+        given.properties[k]    = phases.property(name_of(which[k]), value);
       }
     for (const char *const name : modulus_names)
       if (text(name).empty() && phases.gives(name))
         entry_error(phases.where(name),
-                    "section 'Material' gives " + quoted(given) +
+                    "section 'Material' gives " + quoted(names) +
                       "; phases have values of the same moduli.");
 
     const int n_regions = static_cast<int>(phases.all().names.size());
     for (int region = -1; region < n_regions; ++region)
       {
-        const Expression &a = given_moduli.values[0].formula(region),
-                         &b = given_moduli.values[1].formula(region);
+        const Expression &a = given.properties[0].formula(region),
+                         &b = given.properties[1].formula(region);
         if (!a.is_constant() || !b.is_constant())
           continue;
         const std::string fault =
-          fault_of_moduli(a.value(dealii::Point<1>()), b.value(dealii::Point<1>()));
+          given.fault(a.value(dealii::Point<1>()), b.value(dealii::Point<1>()));
         if (fault.empty())
           continue;
-        const std::string first  = name_of(given_moduli.which[0]),
-                          second = name_of(given_moduli.which[bar ? 0 : 1]);
+        const std::string first  = name_of(given.which[0]),
+                          second = name_of(given.which[bar ? 0 : 1]);
         if (region < 0)
           error(second, fault);
         entry_error((phases.gives(second) ? phases.where(second) : phases.where(first)) +
@@ -470,33 +460,27 @@ namespace PeriDeal
                             const Modulus     b,
                             const Expression &value_b)
   {
-    given_moduli.which                 = {{a, b}};
-    given_moduli.values                = {{value_a, value_b}};
-    given_moduli.may_be_incompressible = true; // the laws refuse it where they cannot have it
+    given.which                 = {{a, b}};
+    given.properties            = {{value_a, value_b}};
+    given.may_be_incompressible = true; // the laws refuse it where they cannot have it
     if (!uniform_moduli())
       return;
     const std::string fault =
-      fault_of_moduli(value_a.value(dealii::Point<1>()), value_b.value(dealii::Point<1>()));
+      given.fault(value_a.value(dealii::Point<1>()), value_b.value(dealii::Point<1>()));
     AssertThrow(fault.empty(), UserError(name_of(b) + " of the material: " + fault));
-  }
-
-
-  bool Material::uniform_moduli() const
-  {
-    return given_moduli.values[0].is_constant() && given_moduli.values[1].is_constant();
   }
 
 
   template <int dim>
   Moduli Material::moduli(const dealii::Point<dim> &p) const
   {
-    const double a = given_moduli.values[0].value(p), b = given_moduli.values[1].value(p);
+    const double a = given.properties[0].value(p), b = given.properties[1].value(p);
     // Constant ones have been checked.
-    const std::string fault = uniform_moduli() ? "" : fault_of_moduli(a, b);
+    const std::string fault = uniform_moduli() ? "" : given.fault(a, b);
     if (!fault.empty())
-      report_formula_error("Entry " + where(name_of(given_moduli.which[a > 0. ? 1 : 0])) + ", at " +
+      report_formula_error("Entry " + where(name_of(given.which[a > 0. ? 1 : 0])) + ", at " +
                            point_text(p) + ": " + fault);
-    return moduli_from(given_moduli.which[0], a, given_moduli.which[1], b);
+    return moduli_from(given.which[0], a, given.which[1], b);
   }
 
 

@@ -21,49 +21,39 @@ namespace PeriDeal
 
   namespace
   {
-    /** Names of the groups of a dimension that these elements are in. */
-    class Names
+    std::string name_of(const MshMesh &mesh, const unsigned int dimension, const int id)
     {
-    public:
-      Names(const MshMesh &mesh, const unsigned int dimension)
-      {
-        for (const auto &[key, id] : mesh.ids)
-          if (key.first == dimension)
-            names.emplace(id, key.second);
-      }
+      for (const auto &[key, number] : mesh.ids)
+        if (key.first == dimension && number == id)
+          return key.second;
+      return std::to_string(id);
+    }
 
-      std::string of(const int id) const
-      {
-        const auto found = names.find(id);
-        return found == names.end() ? std::to_string(id) : found->second;
-      }
 
-      MeshGroups::Numbers of(const std::vector<MshElement> &elements) const
-      {
-        std::set<int> ids;
-        for (const MshElement &element : elements)
-          ids.insert(element.id);
-        MeshGroups::Numbers found;
-        for (const int id : ids)
-          found.emplace(of(id), id);
-        return found;
-      }
-
-    private:
-      std::map<int, std::string> names;
-    };
+    /** The groups of a dimension that these elements are in. */
+    MeshGroups::Numbers numbers_of(const MshMesh                 &mesh,
+                                   const unsigned int             dimension,
+                                   const std::vector<MshElement> &elements)
+    {
+      std::set<int> ids;
+      for (const MshElement &element : elements)
+        ids.insert(element.id);
+      MeshGroups::Numbers found;
+      for (const int id : ids)
+        found.emplace(name_of(mesh, dimension, id), id);
+      return found;
+    }
 
 
     MeshGroups groups_of(const MshMesh &mesh, const unsigned int dim, const bool faces)
     {
-      MeshGroups  groups;
-      const Names of_sides(mesh, dim - 1), of_points(mesh, 0);
-      groups.sides      = of_sides.of(mesh.sides);
-      groups.interfaces = of_sides.of(mesh.interfaces);
-      groups.materials  = Names(mesh, dim).of(mesh.cells);
+      MeshGroups groups;
+      groups.sides      = numbers_of(mesh, dim - 1, mesh.sides);
+      groups.interfaces = numbers_of(mesh, dim - 1, mesh.interfaces);
+      groups.materials  = numbers_of(mesh, dim, mesh.cells);
       // A number is that of a side; files number the groups of each dimension by themselves.
       for (const MshElement &place : mesh.places)
-        if (const std::string name = of_points.of(place.id);
+        if (const std::string name = name_of(mesh, 0, place.id);
             name.find_first_not_of("0123456789") != std::string::npos)
           {
             auto                   &places = groups.points[name];

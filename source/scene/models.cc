@@ -19,17 +19,17 @@ namespace PeriDeal
       "exp(-(2 r/delta)^2).";
     declare("Kernel exponent", EntryType::text, "auto", "1") =
       "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.";
-    declare(volume_fraction, "Volume fraction", "linear", {"none", "linear", "exact"}) =
+    declare(sampling.volume_fraction, "Volume fraction", "linear", {"none", "linear", "exact"}) =
       "Share of a neighbour's volume that counts: all of it for r <= delta (none); a linear ramp "
       "one spacing wide about r = delta; or the exact part of its lattice cell within the "
       "horizon.";
-    declare(calibration, "Calibration", "discrete", {"discrete", "analytic"}) =
+    declare(sampling.calibration, "Calibration", "discrete", {"discrete", "analytic"}) =
       "What makes a linear field conduct Conductivity times its gradient: the sum over a full "
       "family of the lattice (exact at any m), or the integral (low by 7 % at m = 3 in 2D).";
-    declare(self_term, "Self term", "none", {"none", "paper"}) =
+    declare(sampling.self_term, "Self term", "none", {"none", "paper"}) =
       "The term of a node with itself as published by Bobaru and Duangpanya; inflates the "
       "conductivity.";
-    declare(nodal_volume, "Nodal volume", "partial", {"partial", "full"}) =
+    declare(sampling.nodal_volume, "Nodal volume", "partial", {"partial", "full"}) =
       "Volume of nodes on the boundary: half a cell on an edge, a quarter at a corner, or "
       "full cells.";
     declare(form, "Operator form", "auto", {"auto", "lattice", "stored"}) =
@@ -99,14 +99,14 @@ namespace PeriDeal
              entry,
              what + " with 'Physics = elasticity'; " + remedy);
     };
-    refuse_in_solids(self_term != SelfTerm::none, "Self term", "use 'none'.");
+    refuse_in_solids(sampling.self_term != SelfTerm::none, "Self term", "use 'none'.");
     refuse_in_solids(!natural_fluxes(), "Flux treatment", "use 'natural'.");
     refuse_in_solids(correction_direction != CorrectionDirection::both,
                      "Correction direction",
                      "use 'both'.");
     // On square cells any factor cancels; on others the factors of `discrete` make theta exact
     // (doc/elasticity.md).
-    refuse_in_solids(calibration != Calibration::discrete,
+    refuse_in_solids(sampling.calibration != Calibration::discrete,
                      "Calibration",
                      "bonds are scaled by the sums over their own families. Leave the entry out.",
                      "'analytic' is not for use");
@@ -117,32 +117,6 @@ namespace PeriDeal
       treatment == BoundaryTreatment::exchange ?
         "'exchange' has no place for a nonlocal dilatation" :
         "fictitious nodes and layers are not defined");
-  }
-
-
-  bool Peridynamics::has_fictitious_nodes() const
-  {
-    return treatment == BoundaryTreatment::fictitious_mirror ||
-           treatment == BoundaryTreatment::fictitious_constant;
-  }
-
-
-  bool Peridynamics::scales_beside_cracks() const
-  {
-    return surface_correction == SurfaceCorrection::crack_scaling;
-  }
-
-
-  bool Peridynamics::corrects_elastic_bonds() const
-  {
-    return surface_correction == SurfaceCorrection::energy ||
-           surface_correction == SurfaceCorrection::moments;
-  }
-
-
-  bool Peridynamics::completes_families() const
-  {
-    return surface_correction == SurfaceCorrection::fictitious_nodes;
   }
 
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <deal.II/base/tensor.h>
+
 #include <perideal/scene/msh_file.h>
 
 #include <algorithm>
@@ -9,6 +11,8 @@
 
 namespace PeriDeal
 {
+  using namespace dealii;
+
   namespace
   {
     using Vector3 = std::array<double, 3>;
@@ -124,11 +128,29 @@ namespace PeriDeal
         return text;
       }
 
-      Vector3 edge(const MshElement &cell, const unsigned int from, const unsigned int to) const
+      /** "the hexahedron 7 of the nodes 1, 2, ..." */
+      std::string title(const MshElement &element, const std::string &kind) const
       {
-        Vector3 e;
-        for (unsigned int d = 0; d < 3; ++d)
-          e[d] = d < dim ? mesh.points[cell.nodes[to]][d] - mesh.points[cell.nodes[from]][d] : 0.;
+        return "the " + kind + " " + std::to_string(element.number) + " of the nodes " +
+               nodes_of(element);
+      }
+
+      [[noreturn]] void fault(const MshElement &element, const std::string &what) const
+      {
+        msh_error(name, element.line, what);
+      }
+
+      /** From a corner of a cell along the k-th edge there. */
+      Tensor<1, 3> edge(const MshElement  &cell,
+                        const unsigned int corner,
+                        const unsigned int k) const
+      {
+        const unsigned int end = dim == 1 ? 1 - corner :
+                                 dim == 2 ? neighbors_2[corner][k] :
+                                            neighbors_3[corner][k];
+        Tensor<1, 3>       e;
+        for (unsigned int d = 0; d < dim; ++d)
+          e[d] = mesh.points[cell.nodes[end]][d] - mesh.points[cell.nodes[corner]][d];
         return e;
       }
 
@@ -136,24 +158,15 @@ namespace PeriDeal
        * their lengths. 0 if one has no length. */
       double sine(const MshElement &cell, const unsigned int corner) const
       {
-        const auto unit = [&](const unsigned int to) {
-          Vector3      e      = edge(cell, corner, to);
-          const double length = std::hypot(e[0], e[1], e[2]);
-          for (double &x : e)
-            x = length > smallest_length * extent ? x / length : 0.;
-          return e;
-        };
-        if (dim == 1)
-          return unit(1 - corner)[0] * (corner == 0 ? 1. : -1.);
-        if (dim == 2)
-          {
-            const Vector3 a = unit(neighbors_2[corner][0]), b = unit(neighbors_2[corner][1]);
-            return a[0] * b[1] - a[1] * b[0];
-          }
-        const Vector3 a = unit(neighbors_3[corner][0]), b = unit(neighbors_3[corner][1]),
-                      c = unit(neighbors_3[corner][2]);
-        return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-               a[2] * (b[0] * c[1] - b[1] * c[0]);
+        Tensor<1, 3> edges[3];
+        for (unsigned int k = 0; k < 3; ++k)
+          if (k >= dim)
+            edges[k][k] = 1.;
+          else if (const Tensor<1, 3> e = edge(cell, corner, k);
+                   e.norm() > smallest_length * extent)
+            edges[k] = e / e.norm();
+        return edges[0] * cross_product_3d(edges[1], edges[2]) *
+               (dim == 1 && corner == 1 ? -1. : 1.);
       }
 
       /**
@@ -163,11 +176,9 @@ namespace PeriDeal
       {
         if (dim != 2)
           return false;
-        const Vector3 a      = edge(cell, corner, neighbors_2[corner][0]),
-                      b      = edge(cell, corner, neighbors_2[corner][1]);
-        const double lengths = std::hypot(a[0], a[1]) * std::hypot(b[0], b[1]);
-        return lengths > std::pow(smallest_length * extent, 2) &&
-               a[0] * b[0] + a[1] * b[1] < -0.5 * lengths;
+        const Tensor<1, 3> a = edge(cell, corner, 0), b = edge(cell, corner, 1);
+        const double       lengths = a.norm() * b.norm();
+        return lengths > std::pow(smallest_length * extent, 2) && a * b < -0.5 * lengths;
       }
 
       /** 1, or -1 for a cell that is numbered the other way round. */
@@ -176,11 +187,10 @@ namespace PeriDeal
         for (unsigned int a = 0; a < cell.n; ++a)
           for (unsigned int b = 0; b < a; ++b)
             if (cell.nodes[a] == cell.nodes[b])
-              msh_error(name,
-                        cell.line,
-                        "found node " + std::to_string(mesh.numbers[cell.nodes[a]]) +
-                          " twice in element " + std::to_string(cell.number) + ", expected " +
-                          std::to_string(cell.n) + " different nodes of a " + cell_name + ".");
+              fault(cell,
+                    "found node " + std::to_string(mesh.numbers[cell.nodes[a]]) +
+                      " twice in element " + std::to_string(cell.number) + ", expected " +
+                      std::to_string(cell.n) + " different nodes of a " + cell_name + ".");
         int sign = 0;
         for (unsigned int corner = 0; corner < cell.n; ++corner)
           {
@@ -189,21 +199,16 @@ namespace PeriDeal
             if (own == 0 && is_straight(cell, corner))
               continue;
             if (own == 0 || own == -sign)
-              msh_error(name,
-                        cell.line,
-                        "the " + cell_name + " " + std::to_string(cell.number) + " of the nodes " +
-                          nodes_of(cell) +
-                          " is folded, flat or has its nodes in a wrong order: found " +
-                          (own == 0 ? "no angle" : "an angle that opens to the other side") +
-                          " at its node " + std::to_string(mesh.numbers[cell.nodes[corner]]) +
-                          ", expected corners that all point outwards.");
+              fault(cell,
+                    title(cell, cell_name) +
+                      " is folded, flat or has its nodes in a wrong order: found " +
+                      (own == 0 ? "no angle" : "an angle that opens to the other side") +
+                      " at its node " + std::to_string(mesh.numbers[cell.nodes[corner]]) +
+                      ", expected corners that all point outwards.");
             sign = own;
           }
         if (sign == 0)
-          msh_error(name,
-                    cell.line,
-                    "the " + cell_name + " " + std::to_string(cell.number) + " of the nodes " +
-                      nodes_of(cell) + " is flat, expected one with an area.");
+          fault(cell, title(cell, cell_name) + " is flat, expected one with an area.");
         return sign;
       }
 
@@ -221,11 +226,10 @@ namespace PeriDeal
             {
               const MshElement &one = mesh.cells[sorted[k - 1].second],
                                &two = mesh.cells[sorted[k].second];
-              msh_error(name,
-                        two.line,
-                        "the " + cell_name + " " + std::to_string(two.number) +
-                          " has the same nodes as number " + text_of(one) +
-                          ", expected each once (is a surface or volume in two physical groups?).");
+              fault(two,
+                    "the " + cell_name + " " + std::to_string(two.number) +
+                      " has the same nodes as number " + text_of(one) +
+                      ", expected each once (is a surface or volume in two physical groups?).");
             }
       }
 
@@ -258,19 +262,17 @@ namespace PeriDeal
               continue;
             const MshElement &cell = mesh.cells[two.element], &other = mesh.cells[one.element];
             if (k > 1 && faces[k - 2].nodes == two.nodes)
-              msh_error(name,
-                        cell.line,
-                        "found three cells with the same " + face_name + ", " +
-                          text_of(mesh.cells[faces[k - 2].element]) + ", " + text_of(other) +
-                          " and " + text_of(cell) + ", expected two at most.");
+              fault(cell,
+                    "found three cells with the same " + face_name + ", " +
+                      text_of(mesh.cells[faces[k - 2].element]) + ", " + text_of(other) + " and " +
+                      text_of(cell) + ", expected two at most.");
             if (one.positive == two.positive || one.across != two.across)
-              msh_error(name,
-                        cell.line,
-                        "the cells " + text_of(other) + " and " + text_of(cell) +
-                          (dim == 3 ? " share a " : " share an ") + face_name +
-                          (one.across != two.across ? " whose nodes they take in different orders" :
-                                                      " and lie on the same side of it") +
-                          ": found a folded mesh, expected that cells do not overlap.");
+              fault(cell,
+                    "the cells " + text_of(other) + " and " + text_of(cell) +
+                      (dim == 3 ? " share a " : " share an ") + face_name +
+                      (one.across != two.across ? " whose nodes they take in different orders" :
+                                                  " and lie on the same side of it") +
+                      ": found a folded mesh, expected that cells do not overlap.");
           }
       }
 
@@ -286,31 +288,27 @@ namespace PeriDeal
         std::sort(named.begin(), named.end(), before);
         for (std::size_t k = 0; k < named.size(); ++k)
           {
-            const MshElement &side  = mesh.sides[named[k].element];
-            const std::string title = "the " + std::string(names[dim - 1]) + " " +
-                                      std::to_string(side.number) + " of the nodes " +
-                                      nodes_of(side);
+            const MshElement &side = mesh.sides[named[k].element];
+            const std::string who  = title(side, names[dim - 1]);
             const auto [first, last] =
               std::equal_range(faces.begin(),
                                faces.end(),
                                named[k],
                                [](const Face &a, const Face &b) { return a.nodes < b.nodes; });
             if (dim > 1 && (first == last || (dim == 3 && first->across != named[k].across)))
-              msh_error(name,
-                        side.line,
-                        title + " is found to be no " + face_name + " of a " + cell_name +
-                          ", expected a piece of a side of the body.");
+              fault(side,
+                    who + " is found to be no " + face_name + " of a " + cell_name +
+                      ", expected a piece of a side of the body.");
             if (dim > 1 && last - first == 2)
               inside.insert(named[k].element); // between two materials
             if (k == 0 || named[k - 1].nodes != named[k].nodes)
               continue;
             again.insert(named[k].element);
             if (mesh.sides[named[k - 1].element].id != side.id)
-              msh_error(name,
-                        side.line,
-                        title + " is found to be in the physical groups " +
-                          std::to_string(mesh.sides[named[k - 1].element].id) + " and " +
-                          std::to_string(side.id) + ", expected one.");
+              fault(side,
+                    who + " is found to be in the physical groups " +
+                      std::to_string(mesh.sides[named[k - 1].element].id) + " and " +
+                      std::to_string(side.id) + ", expected one.");
           }
         std::vector<MshElement> outside;
         for (unsigned int s = 0; s < mesh.sides.size(); ++s)

@@ -36,36 +36,21 @@ namespace PeriDeal
       "(in Gmsh: 'Recombine Surface' and Mesh.SubdivisionAlgorithm = 1 make quadrilaterals, = 2 hexahedra; or use transfinite or extruded volumes).";
 
 
-    const char *type_name(const int type)
+    struct ElementType
     {
-      switch (type)
-        {
-          case 1:
-            return "line";
-          case 2:
-            return "triangle";
-          case 3:
-            return "quadrilateral";
-          case 4:
-            return "tetrahedron";
-          case 5:
-            return "hexahedron";
-          case 6:
-            return "prism";
-          case 7:
-            return "pyramid";
-          case 15:
-            return "point";
-          default:
-            return nullptr;
-        }
-    }
+      const char  *name;
+      unsigned int dimension, n_nodes;
+    };
 
-
-    unsigned int type_dimension(const int type)
-    {
-      return type == 15 ? 0 : type == 1 ? 1 : type < 4 ? 2 : 3;
-    }
+    /** By Gmsh's numbers. */
+    const std::map<int, ElementType> element_types{{1, {"line", 1, 2}},
+                                                   {2, {"triangle", 2, 3}},
+                                                   {3, {"quadrilateral", 2, 4}},
+                                                   {4, {"tetrahedron", 3, 4}},
+                                                   {5, {"hexahedron", 3, 8}},
+                                                   {6, {"prism", 3, 6}},
+                                                   {7, {"pyramid", 3, 5}},
+                                                   {15, {"point", 0, 1}}};
 
 
     /**
@@ -101,14 +86,13 @@ namespace PeriDeal
 
       double real(const std::string &what)
       {
-        const std::string word  = number<double>(what);
-        char             *end   = nullptr;
-        const double      value = std::strtod(word.c_str(), &end);
-        if (*end != '\0' || word.find_first_not_of("0123456789+-.eE") != std::string::npos)
+        const std::string           word  = number<double>(what);
+        const std::optional<double> value = plain_number(word);
+        if (!value)
           broken("found '" + shortened(word) + "'", what);
-        if (!(std::abs(value) < 1e100)) // squares and products have to be finite, too
+        if (!(std::abs(*value) < 1e100)) // squares and products have to be finite, too
           broken("found " + shortened(word) + ", which is too large", what);
-        return value;
+        return *value;
       }
 
       int whole(const std::string &what, const long lowest, const long highest)
@@ -592,12 +576,12 @@ namespace PeriDeal
             auto more = more_groups.end(); // of a point
             if (!is_old)
               {
-                const auto entity = read_entity();
-                type              = read_type();
-                const int of_type = type_dimension(type);
-                if (of_type != entity.first)
-                  words.broken("found a " + std::string(type_name(type)) +
-                                 " in an entity of dimension " + std::to_string(entity.first),
+                const auto entity       = read_entity();
+                type                    = read_type();
+                const ElementType &kind = element_types.at(type);
+                if (static_cast<int>(kind.dimension) != entity.first)
+                  words.broken("found a " + std::string(kind.name) + " in an entity of dimension " +
+                                 std::to_string(entity.first),
                                "an element of that dimension");
                 const auto found = ids.find(entity);
                 if (found == ids.end() && has_entities && !partitioned)
@@ -636,15 +620,14 @@ namespace PeriDeal
       /** A type that a mesh of this dimension can have. */
       int read_type()
       {
-        const int   type  = words.whole("the type of an element", 1, 1000);
-        const char *title = type_name(type);
-        if (title == nullptr)
+        const int  type  = words.whole("the type of an element", 1, 1000);
+        const auto found = element_types.find(type);
+        if (found == element_types.end())
           words.error("found an element of type " + std::to_string(type) +
                       ", which is of higher order or none of Gmsh's." + supported);
-        const bool can = type == 15 || type == 1 || (type == 3 && dim > 1) ||
-                         (type == 5 && dim > 2);
-        if (!can)
-          words.error("found a " + std::string(title) + ", which a mesh of dimension " +
+        const auto &[name, dimension, n_nodes] = found->second;
+        if (n_nodes != 1u << dimension || dimension > dim)
+          words.error("found a " + std::string(name) + ", which a mesh of dimension " +
                       std::to_string(dim) + " that can be used does not have." + supported);
         return type;
       }
@@ -693,8 +676,8 @@ namespace PeriDeal
                 id            = k == 0 ? tag : id;
               }
           }
-        element.id = the_first_of(type_dimension(type), id);
-        element.n  = type == 15 ? 1 : type == 1 ? 2 : type == 3 ? 4 : 8;
+        element.id = the_first_of(element_types.at(type).dimension, id);
+        element.n  = element_types.at(type).n_nodes;
         for (unsigned int k = 0; k < element.n; ++k)
           {
             const int  number = words.tag("a node of element " + std::to_string(element.number), 1);

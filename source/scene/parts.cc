@@ -4,6 +4,7 @@
 #include <perideal/scene/lists.h>
 #include <perideal/scene/parts.h>
 
+#include <algorithm>
 #include <cctype>
 
 namespace PeriDeal
@@ -43,41 +44,47 @@ namespace PeriDeal
   } // namespace
 
 
-  PartText split_part(const std::string &text, const std::string &where)
+  Part parse_part(const std::string &text,
+                  const unsigned int dim,
+                  const std::string &where,
+                  std::string       &side)
   {
-    PartText result{Part::of_side, "", ""};
+    Part        part;
+    std::string rest;
     for (const Part::Kind kind : {Part::region, Part::point})
       if (const std::string word = kind == Part::region ? "region" : "point";
           begins_with_word(text, word))
         {
-          result.kind = kind;
-          result.rest = trimmed(text.substr(word.size()));
-          if (result.rest.empty())
+          part.kind = kind;
+          rest      = trimmed(text.substr(word.size()));
+          if (rest.empty())
             entry_error(where, "'" + word + "' is all there is; needs " + forms + ".");
-          return result;
         }
-    const std::size_t at = place_of_if(text);
-    if (at == std::string::npos)
+    if (part.kind == Part::of_side)
+      {
+        const std::size_t at = place_of_if(text);
+        if (at == std::string::npos)
+          entry_error(where,
+                      "found '" + text + "', needs " + forms +
+                        ". Whole sides have a name already and need no part.");
+        side = unquoted(trimmed(text.substr(0, at)));
+        rest = trimmed(text.substr(at + 2));
+        if (rest.empty())
+          entry_error(where, "a formula is missing behind 'if'.");
+      }
+    if (part.kind == Part::point)
+      {
+        const auto x = parse_numbers(rest, dim, dim == 1 ? "coordinate" : "coordinates", where);
+        std::copy(x.begin(), x.end(), part.place.begin());
+        return part;
+      }
+    part.inside = Expression(rest, where, "x, y, z");
+    if (part.inside.depends_on_time())
       entry_error(where,
-                  "found '" + text + "', needs " + forms +
-                    ". Whole sides have a name already and need no part.");
-    result.side = unquoted(trimmed(text.substr(0, at)));
-    result.rest = trimmed(text.substr(at + 2));
-    if (result.rest.empty())
-      entry_error(where, "a formula is missing behind 'if'.");
-    return result;
-  }
-
-
-  Expression part_formula(const std::string &text, const std::string &where)
-  {
-    Expression formula(text, where, "x, y, z");
-    if (formula.depends_on_time())
-      entry_error(where,
-                  "the formula '" + text +
+                  "the formula '" + rest +
                     "' depends on t; a part stays where it is. Let the values on it depend on t.");
-    if (formula.is_constant() && !(formula.value(Point<1>()) > 0.))
-      entry_error(where, "the formula '" + text + "' holds nowhere: the part is empty.");
-    return formula;
+    if (part.inside.is_constant() && !(part.inside.value(Point<1>()) > 0.))
+      entry_error(where, "the formula '" + rest + "' holds nowhere: the part is empty.");
+    return part;
   }
 } // namespace PeriDeal

@@ -220,21 +220,6 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  double MaterialProperty::value(const dealii::Point<dim> &p, const double temperature) const
-  {
-    return formula_at(p).value(p, 0., temperature);
-  }
-
-
-  template <int dim>
-  const std::vector<double> &MaterialProperty::marked_temperatures(
-    const dealii::Point<dim> &p) const
-  {
-    return formula_at(p).marked_temperatures();
-  }
-
-
   bool MaterialProperty::is_constant() const
   {
     return regions == nullptr && elsewhere.is_constant();
@@ -349,21 +334,24 @@ namespace PeriDeal
         std::optional<Expression> &value = list[found - regions->names.begin()];
         if (value)
           error(entry, "the phase '" + name + "' is named twice.");
-        value = material_formula(text_of_phase, kind, elastic, may_vanish(entry), at);
+        const bool capacity   = entry == "Heat capacity",
+                   may_vanish = (!needs_storage && (capacity || entry == "Density")) ||
+                                (elastic && capacity);
+        value = material_formula(text_of_phase, kind, elastic, may_vanish, at);
       }
     return list;
   }
 
 
-  void Phases::parse(const Physics                                  physics,
-                     const std::shared_ptr<const PhaseMap>         &image,
-                     const std::function<bool(const std::string &)> may_be_zero)
+  void Phases::parse(const Physics                          physics,
+                     const std::shared_ptr<const PhaseMap> &image,
+                     const bool                             storage_needed)
   {
-    may_vanish  = may_be_zero;
-    elastic     = physics == Physics::elasticity;
-    auto list   = std::make_shared<Regions>();
-    list->where = where("Regions");
-    list->mesh  = std::make_shared<MeshMaterials>();
+    needs_storage = storage_needed;
+    elastic       = physics == Physics::elasticity;
+    auto list     = std::make_shared<Regions>();
+    list->where   = where("Regions");
+    list->mesh    = std::make_shared<MeshMaterials>();
     for (const std::string &piece : split_list(text("Regions"), ';'))
       {
         const auto [name, region] = name_and_value(piece, where("Regions"));
@@ -418,12 +406,9 @@ namespace PeriDeal
   }
 
 
-#define PERIDEAL_TEMPLATES(dim)                                                                 \
-  template bool   Region::contains<dim>(const dealii::Point<dim> &) const;                      \
-  template int    Regions::at<dim>(const dealii::Point<dim> &) const;                           \
-  template double MaterialProperty::value<dim>(const dealii::Point<dim> &, const double) const; \
-  template const std::vector<double> &MaterialProperty::marked_temperatures<dim>(               \
-    const dealii::Point<dim> &) const;
+#define PERIDEAL_TEMPLATES(dim)                                          \
+  template bool Region::contains<dim>(const dealii::Point<dim> &) const; \
+  template int  Regions::at<dim>(const dealii::Point<dim> &) const;
   PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
 #undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

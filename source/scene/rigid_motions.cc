@@ -67,30 +67,25 @@ namespace PeriDeal
     }
 
 
-    /** From a node of a lattice to another one along each direction. */
+    /**
+     * From a node of a lattice to another one along each direction. At most 41 of them are seen
+     * along each, the ends among them.
+     */
     template <int dim>
     struct NodeRange
     {
       std::array<unsigned int, dim> first, last;
+
+      unsigned int n_seen(const unsigned int d) const
+      {
+        return std::min(last[d] - first[d], 40u) + 1;
+      }
+
+      unsigned int seen(const unsigned int d, const unsigned int k) const
+      {
+        return n_seen(d) == 1 ? first[d] : first[d] + k * (last[d] - first[d]) / (n_seen(d) - 1);
+      }
     };
-
-
-    /** At most so many nodes of a range along each direction, its ends among them. */
-    constexpr unsigned int most_nodes = 40;
-
-    template <int dim>
-    unsigned int n_nodes_seen(const NodeRange<dim> &range, const unsigned int d)
-    {
-      return std::min(range.last[d] - range.first[d], most_nodes) + 1;
-    }
-
-    template <int dim>
-    unsigned int node_seen(const NodeRange<dim> &range, const unsigned int d, const unsigned int k)
-    {
-      const unsigned int n = n_nodes_seen(range, d);
-      return n == 1 ? range.first[d] :
-                      range.first[d] + k * (range.last[d] - range.first[d]) / (n - 1);
-    }
 
 
     /**
@@ -109,7 +104,7 @@ namespace PeriDeal
       unsigned int   count = 1;
       bool           any   = false;
       for (unsigned int d = 0; d < dim; ++d)
-        count *= n_nodes_seen(range, d);
+        count *= range.n_seen(d);
       for (unsigned int k = 0; k < count; ++k)
         {
           Point<dim>                    p;
@@ -117,11 +112,11 @@ namespace PeriDeal
           unsigned int                  rest = k;
           for (unsigned int d = 0; d < dim; ++d)
             {
-              seen[d] = rest % n_nodes_seen(range, d);
-              rest /= n_nodes_seen(range, d);
+              seen[d] = rest % range.n_seen(d);
+              rest /= range.n_seen(d);
               const double s = side < 2 * dim && d == side / 2 ?
                                  side % 2 :
-                                 (node_seen(range, d, seen[d]) + shift) / domain.cells[d];
+                                 (range.seen(d, seen[d]) + shift) / domain.cells[d];
               p[d]           = domain.lower[d] + s * (domain.upper[d] - domain.lower[d]);
             }
           if (!holds(p))
@@ -129,13 +124,10 @@ namespace PeriDeal
           points.push_back(p);
           for (unsigned int d = 0; d < dim; ++d)
             {
-              const unsigned int before = node_seen(range, d, std::max(seen[d], 1u) - 1),
-                                 after =
-                                   node_seen(range,
-                                             d,
-                                             std::min(seen[d] + 1, n_nodes_seen(range, d) - 1));
-              found.first[d] = any ? std::min(found.first[d], before) : before;
-              found.last[d]  = any ? std::max(found.last[d], after) : after;
+              const unsigned int before = range.seen(d, std::max(seen[d], 1u) - 1),
+                                 after  = range.seen(d, std::min(seen[d] + 1, range.n_seen(d) - 1));
+              found.first[d]            = any ? std::min(found.first[d], before) : before;
+              found.last[d]             = any ? std::max(found.last[d], after) : after;
             }
           any = true;
         }

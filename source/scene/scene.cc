@@ -3,6 +3,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/rules.h>
 
 #include <algorithm>
 #include <cmath>
@@ -98,8 +99,7 @@ namespace PeriDeal
       if (!scene.domain.has_lattice())
         return;
       const auto check = [&](const std::vector<double> &x, const std::string &entry) {
-        Point<dim> p;
-        std::copy(x.begin(), x.end(), p.begin_raw());
+        const Point<dim> p = point_of<dim>(x.data());
         if (!scene.domain.contains(p))
           entry_error(scene.output.where(entry),
                       "the point " + point_text(p) + " lies outside the body.");
@@ -123,8 +123,7 @@ namespace PeriDeal
   void Scene<dim>::take_times()
   {
     this->deforms   = general.physics == Physics::elasticity;
-    this->steady    = time.steady;
-    this->time_step = time.time_step;
+    this->run       = {time.steady, time.time_step};
     cracks.end_time = time.steady ? 0. : time.end_time;
   }
 
@@ -206,7 +205,7 @@ namespace PeriDeal
     cracks.parse(general.physics);
     add_interfaces(*this, groups);
     peridynamics.parse(general.physics);
-    coupling.parse(this->deforms && (material.fracture_energy || material.critical_stretch));
+    coupling.parse(this->deforms && material.breaks());
     lay_cracks_on_faces(*this);
     keep_cracks_off_nodes(*this);
     finite_elements.parse(general.physics, elasticity.computes_temperature);
@@ -250,35 +249,9 @@ namespace PeriDeal
         return false;
       const bool complete = pd.treatment == BoundaryTreatment::exchange ||
                             (pd.treatment == BoundaryTreatment::fictitious_mirror &&
-                             pd.calibration == Calibration::discrete &&
-                             pd.self_term == SelfTerm::none && !scene.domain.has_voids());
+                             pd.sampling.calibration == Calibration::discrete &&
+                             pd.sampling.self_term == SelfTerm::none && !scene.domain.has_voids());
       return complete || !runs(scene, ModelKind::peridynamics);
-    }
-
-
-    /** What `Bonds through tips = in part` cannot be given with. */
-    template <int dim>
-    void check_tips_in_part(const Scene<dim> &scene)
-    {
-      const Cracks<dim> &cracks = scene.cracks;
-      if (cracks.through_tips != ThroughTips::in_part)
-        return;
-      const auto refuse = [&](const bool fault, const std::string &what) {
-        if (fault)
-          entry_error(cracks.where("Bonds through tips"),
-                      "'in part' " + what + "; use 'auto', 'cut' or 'keep'.");
-      };
-      refuse(!scene.deforms, "is for 'Physics = elasticity'");
-      refuse(dim != 2, "is for 'Dimension = 2'");
-      refuse(!scene.domain.has_lattice(),
-             "is for bodies on a lattice; in one of a mesh file any end of a crack may lie on the "
-             "surface");
-      refuse(cracks.on_faces(),
-             "is for bonds and cells that cracks cut; with 'Mesh = faces' they cut none");
-      refuse(cracks.change(), "is for cracks that lie still; here cracks grow or change with time");
-      refuse(scene.material.fracture_energy || scene.material.critical_stretch,
-             "is for bonds that do not break; section 'Material' has 'Fracture energy' or "
-             "'Critical stretch'");
     }
   } // namespace
 
@@ -286,15 +259,11 @@ namespace PeriDeal
   template <int dim>
   void Scene<dim>::validate()
   {
-    check_tips_in_part(*this);
-    cracks.refuse(cracks.on_faces() && cracks.conduct() && domain.coarsening.times > 0,
-                  "Contact conductance",
-                  "is for meshes without 'Coarsening' (section 'Domain') where 'Mesh' is 'faces'; "
-                  "use 'pairs'.");
+    refuse_cracks(*this);
     if (domain.has_lattice())
       {
         cracks.set_box(domain.lower, domain.upper);
-        cracks.check_inside(domain.lower, domain.upper);
+        cracks.check_inside();
         // Beyond planes of symmetry is the other half of the crack.
         Point<dim> lower = domain.lower, upper = domain.upper;
         for (const types::boundary_id side : boundary_conditions.symmetry)
@@ -305,7 +274,6 @@ namespace PeriDeal
                 bound = p[side / 2];
         for (const std::string &note : cracks.parts_outside(lower, upper))
           domain.notes.push_back(note);
-        cracks.check_tips_inside(domain.lower, domain.upper, cracks.end_time);
       }
     if (peridynamics.treatment == BoundaryTreatment::automatic)
       peridynamics.treatment = this->deforms ||

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <regex>
 #include <sstream>
 
 namespace PeriDeal
@@ -133,23 +134,6 @@ namespace PeriDeal
     }
 
 
-    /**
-     * The text with `\n` at the end of each line, wherever it was written: `\r\n` and `\r` alone
-     * are line ends, too.
-     */
-    std::string with_plain_line_ends(const std::string &text)
-    {
-      std::string plain;
-      plain.reserve(text.size());
-      for (std::size_t k = 0; k < text.size(); ++k)
-        if (text[k] != '\r')
-          plain += text[k];
-        else if (k + 1 == text.size() || text[k + 1] != '\n')
-          plain += '\n';
-      return plain;
-    }
-
-
     /** The text of a file, read on rank 0. Collective. */
     std::string read_on_root(const std::string &file_name, const MPI_Comm communicator)
     {
@@ -158,7 +142,10 @@ namespace PeriDeal
       std::string text, message;
       if (rank == 0)
         {
-          text = with_plain_line_ends(read_file(file_name, most_bytes_of_text, message));
+          // "\r\n" and "\r" alone are line ends, too
+          text = std::regex_replace(read_file(file_name, most_bytes_of_text, message),
+                                    std::regex("\r\n?"),
+                                    "\n");
           if (!message.empty())
             message = "The scene file '" + file_name + "' " + message +
                       ". Check its path, which is relative to the working directory.";
@@ -284,7 +271,7 @@ namespace PeriDeal
       scene.domain.files.communicator = text.communicator;
       scene.parse_and_validate();
     });
-    scene.domain.mesh_file = found_near(scene.domain.mesh_file, text.file_name);
+    scene.domain.files.mesh = found_near(scene.domain.files.mesh, text.file_name);
   }
 
 

@@ -264,23 +264,12 @@ namespace PeriDeal
 
   void check_plain_value(const Entry &entry, const std::string &text, const std::string &where)
   {
-    switch (entry.type)
-      {
-        case EntryType::number:
-          parse_number(text, where);
-          break;
-        case EntryType::whole_number:
-          parse_whole_number(text, where, most_of_all);
-          break;
-        case EntryType::boolean:
-          choice_of(text, boolean_names, where);
-          break;
-        case EntryType::choice:
-          choice_of(text, entry.choices, where);
-          break;
-        default:
-          break;
-      }
+    if (entry.type == EntryType::number)
+      parse_number(text, where);
+    else if (entry.type == EntryType::whole_number)
+      parse_whole_number(text, where, most_of_all);
+    else if (entry.type == EntryType::boolean || entry.type == EntryType::choice)
+      choice_of(text, entry.type == EntryType::boolean ? boolean_names : entry.choices, where);
   }
 
 
@@ -292,24 +281,14 @@ namespace PeriDeal
 
   std::string type_text(const Entry &entry)
   {
-    switch (entry.type)
-      {
-        case EntryType::number:
-          return "number";
-        case EntryType::whole_number:
-          return "whole number";
-        case EntryType::boolean:
-          return "true or false";
-        case EntryType::choice:
-          return "one of: " + join_names(entry.choices);
-        case EntryType::choices:
-          return "list of: " + join_names(entry.choices);
-        case EntryType::formula:
-          return "formula";
-        case EntryType::list:
-          return "list";
-        default:
-          return "text";
-      }
+    static const char *const names[] = {"text",
+                                        "number",
+                                        "whole number",
+                                        "true or false",
+                                        "one of: ",
+                                        "list of: ",
+                                        "formula",
+                                        "list"};
+    return names[static_cast<unsigned int>(entry.type)] + join_names(entry.choices);
   }
 } // namespace PeriDeal

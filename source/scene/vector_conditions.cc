@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
+#include <regex>
 
 namespace PeriDeal
 {
@@ -22,21 +22,44 @@ namespace PeriDeal
     /** Whether the word `free` is in a text, not as a part of a longer word. */
     bool has_free(const std::string &text)
     {
-      const auto in_word = [&](const std::size_t i) {
-        return i < text.size() &&
-               (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_');
-      };
-      for (std::size_t at = text.find(free_word); at != std::string::npos;
-           at             = text.find(free_word, at + 1))
-        if ((at == 0 || !in_word(at - 1)) && !in_word(at + free_word.size()))
-          return true;
-      return false;
+      static const std::regex word("\\bfree\\b");
+      return std::regex_search(text, word);
     }
 
 
-    std::string component_name(const unsigned int c)
+    /** The two formulas that `if(y < 1, 0, free)` stands for. */
+    struct FreeBranch
     {
-      return std::string(1, "xyz"[c]);
+      std::string value; // `free` is 0 in it
+      std::string held;  // 1 where there is a value, 0 where `free`; empty: no `free` in the text
+    };
+
+
+    /** `free` alone or as a whole branch of `if(condition, a, b)`; UserError elsewhere. */
+    FreeBranch split_free(const std::string &text, const std::string &where)
+    {
+      if (!has_free(text))
+        return {text, ""};
+      if (trimmed(text) == free_word)
+        return {"0", "0"};
+      const std::string inner     = trimmed(text);
+      const std::size_t open      = inner.find('(');
+      const bool        is_branch = open != std::string::npos && inner.back() == ')' &&
+                             trimmed(inner.substr(0, open)) == "if";
+      const std::vector<std::string> pieces =
+        is_branch ? split_list(inner.substr(open + 1, inner.size() - open - 2), ',') :
+                    std::vector<std::string>();
+      if (pieces.size() != 3 || has_free(pieces[0]))
+        entry_error(
+          where,
+          "found '" + inner +
+            "'; 'free' stands alone or as a branch of its own: if(condition, formula, free).");
+      const FreeBranch a = split_free(pieces[1], where), b = split_free(pieces[2], where);
+      const auto       joined = [&](const std::string &first, const std::string &second) {
+        return "if(" + pieces[0] + ", " + first + ", " + second + ")";
+      };
+      return {joined(a.value, b.value),
+              joined(a.held.empty() ? "1" : a.held, b.held.empty() ? "1" : b.held)};
     }
   } // namespace
 
@@ -75,33 +98,6 @@ namespace PeriDeal
   }
 
 
-  FreeBranch split_free(const std::string &text, const std::string &where)
-  {
-    if (!has_free(text))
-      return {text, ""};
-    if (trimmed(text) == free_word)
-      return {"0", "0"};
-    const std::string inner     = trimmed(text);
-    const std::size_t open      = inner.find('(');
-    const bool        is_branch = open != std::string::npos && inner.back() == ')' &&
-                           trimmed(inner.substr(0, open)) == "if";
-    const std::vector<std::string> pieces =
-      is_branch ? split_list(inner.substr(open + 1, inner.size() - open - 2), ',') :
-                  std::vector<std::string>();
-    if (pieces.size() != 3 || has_free(pieces[0]))
-      entry_error(
-        where,
-        "found '" + inner +
-          "'; 'free' stands alone or as a branch of its own: if(condition, formula, free).");
-    const FreeBranch a = split_free(pieces[1], where), b = split_free(pieces[2], where);
-    const auto       joined = [&](const std::string &first, const std::string &second) {
-      return "if(" + pieces[0] + ", " + first + ", " + second + ")";
-    };
-    return {joined(a.value, b.value),
-            joined(a.held.empty() ? "1" : a.held, b.held.empty() ? "1" : b.held)};
-  }
-
-
   void parse_components(const std::string &text,
                         const unsigned int dim,
                         const bool         may_be_free,
@@ -121,12 +117,12 @@ namespace PeriDeal
     condition.texts = pieces;
     for (unsigned int c = 0; c < dim; ++c)
       {
-        const std::string at = where + ", component in " + component_name(c);
+        const std::string at = where + ", component in " + "xyz"[c];
         if (has_free(pieces[c]) && !may_be_free)
           entry_error(
             where,
             "'free' stands for displacements that nothing holds; give 0 for the component in " +
-              component_name(c) + ".");
+              std::string(1, "xyz"[c]) + ".");
         const FreeBranch branch = split_free(pieces[c], at);
         if (pieces[c] == free_word)
           continue;

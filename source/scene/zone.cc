@@ -42,11 +42,8 @@ namespace PeriDeal
         }
       return std::abs(winding) > 3.;
     }
-  } // namespace
 
 
-  namespace
-  {
     /** Directions in space, evenly spread: two, on a circle, or on a spiral around the sphere. */
     template <int dim>
     std::vector<Tensor<1, dim>> some_directions()
@@ -75,10 +72,7 @@ namespace PeriDeal
   {
     if constexpr (dim == 3)
       {
-        Tensor<1, 3> normal;
-        for (unsigned int i = 1; i + 1 < corners.size(); ++i)
-          normal += cross_product_3d(corners[i] - corners[0], corners[i + 1] - corners[0]);
-        if (normal.norm() > 0.)
+        if (Tensor<1, 3> normal = doubled_area_vector(corners); normal.norm() > 0.)
           {
             normal /= normal.norm();
             if (foot_inside(corners, normal, p))
@@ -118,13 +112,6 @@ namespace PeriDeal
     zone.reach      = reach;
     zone.directions = some_directions<dim>();
     return zone;
-  }
-
-
-  template <int dim>
-  void Zone<dim>::stay_in(const BoundingBox<dim> &box)
-  {
-    body = box;
   }
 
 
@@ -204,24 +191,6 @@ namespace PeriDeal
     if (width_outside == 0.)
       return contains(p) ? 1. : 0.;
     return 1. - std::min(1., distance(p, width_outside) / width_outside);
-  }
-
-  template <int dim>
-  bool Zone<dim>::is_everywhere() const
-  {
-    return kind == ZoneKind::everywhere;
-  }
-
-  template <int dim>
-  bool Zone<dim>::follows_cracks() const
-  {
-    return kind == ZoneKind::near_cracks || kind == ZoneKind::adaptive || kind == ZoneKind::follow;
-  }
-
-  template <int dim>
-  bool Zone<dim>::follows_stretches() const
-  {
-    return kind == ZoneKind::follow;
   }
 
   PERIDEAL_INSTANTIATE_FUNCTION(distance_to_piece);

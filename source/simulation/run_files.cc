@@ -56,8 +56,8 @@ namespace PeriDeal
         if (!file_name.empty())
           sums[entry] = checksum_of_file(file_name, communicator);
       };
-      add("Domain/Mesh file", scene.domain.mesh_file);
-      add("Domain/Image", scene.domain.image_file);
+      add("Domain/Mesh file", scene.domain.files.mesh);
+      add("Domain/Image", scene.domain.files.image);
       return sums;
     }
 

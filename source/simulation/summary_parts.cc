@@ -135,7 +135,7 @@ namespace PeriDeal
     if (json places = places_of_conditions(scene, mesh, communicator); !places.empty())
       summary["places"] = std::move(places);
     if (scene.domain.image)
-      summary["image"] = describe_image(scene.domain.image_file, scene.domain.image_of_body());
+      summary["image"] = describe_image(scene.domain.files.image, scene.domain.image_of_body());
     return summary;
   }
 

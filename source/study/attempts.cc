@@ -23,43 +23,7 @@ namespace PeriDeal
     {
       return scene.deforms && !scene.elasticity.is_static();
     }
-
-
-    /** What is not yet chosen for, in words, or nothing. */
-    template <int dim>
-    std::string obstacle(const Scene<dim> &scene)
-    {
-      if (scene.domain.shape != Shape::box || scene.domain.holes.has_one ||
-          !scene.domain.holes.listed.empty())
-        return "bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
-      if (moves(scene) && (!scene.cracks.cracks.empty() || scene.peridynamics.horizon > 0.))
-        return "motion with cracks, or with a horizon that is a length";
-      if (scene.material.law.kind != SolidLaw::linear)
-        return "another 'Law' than 'linear' (section 'Material')";
-      if (!scene.time.steady && scene.deforms && !moves(scene))
-        return "bodies at rest whose loads change with time";
-      if (scene.cracks.change() && (scene.time.steady || scene.peridynamics.horizon > 0.))
-        return "cracks that grow or change ('Growth', 'Transmission' in section 'Cracks') in a steady state, or with a "
-               "horizon that is a length";
-      if (scene.elasticity.computes_temperature)
-        return "a computed temperature ('Temperature change' in section 'Elasticity')";
-      if (scene.material.fracture_energy || scene.material.critical_stretch)
-        return "bonds that break ('Fracture energy', 'Critical stretch' in section 'Material')";
-      if (scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
-        return "'Transmission' of cracks, a share of bonds of one horizon, another crack on each lattice: give 'Contact conductance'";
-      return "";
-    }
   } // namespace
-
-
-  template <int dim>
-  void require_choice(const Scene<dim> &scene)
-  {
-    const std::string what = obstacle(scene);
-    AssertThrow(what.empty(),
-                UserError("Entry 'Models': 'auto' does not choose for " + what +
-                          ". Name models instead: finite elements, peridynamics, coupled."));
-  }
 
 
   template <int dim>
@@ -494,6 +458,5 @@ namespace PeriDeal
   }
 
 
-  PERIDEAL_INSTANTIATE_FUNCTION(require_choice);
   PERIDEAL_INSTANTIATE_CLASS(class Attempts);
 } // namespace PeriDeal

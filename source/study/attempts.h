@@ -31,11 +31,6 @@ namespace PeriDeal
   };
 
 
-  /** Throws UserError for scenes for which nothing can be chosen. Not collective. */
-  template <int dim>
-  void require_choice(const Scene<dim> &scene);
-
-
   /**
    * The models and meshes that are worth trying for a scene, one family from coarse to fine. For
    * the classical solution:

@@ -89,9 +89,9 @@ namespace PeriDeal
         std::string mesh_file;
         with_scene(checked.text, [&](const auto &scene) {
           if (!scene.domain.has_lattice())
-            mesh_file = scene.domain.mesh_file;
+            mesh_file = scene.domain.files.mesh;
           else if (scene.domain.shape == Shape::image)
-            mesh_file = scene.domain.image_file;
+            mesh_file = scene.domain.files.image;
           checked.entries = entries_of_parsed_scene();
         });
         checked.hash = hash_of(checked, mesh_file, communicator);

@@ -10,6 +10,7 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/rules.h>
 #include <perideal/study/naming.h>
 
 #include <nlohmann/json.hpp>
@@ -175,22 +176,7 @@ namespace PeriDeal
   MeasuredError<dim>::MeasuredError(const Scene<dim> &scene)
     : scene(scene)
   {
-    const AccuracyControl &accuracy = scene.accuracy;
-    const bool             deforms  = scene.deforms;
-    accuracy.refuse(accuracy.measure == AccuracyMeasure::probes && scene.output.probes.empty(),
-                    "Measure",
-                    "is 'probes', but 'Probes' in section 'Output' has no point.");
-    accuracy.refuse(accuracy.measure == AccuracyMeasure::flow && deforms,
-                    "Measure",
-                    "is 'flow', but nothing flows in an elastic body; 'field', 'probes' and "
-                    "'stress intensity' are for it.");
-    accuracy.refuse(accuracy.measure == AccuracyMeasure::stress_intensity &&
-                      (!deforms || dim != 2 || scene.cracks.cracks.empty()),
-                    "Measure",
-                    std::string("is 'stress intensity', but ") +
-                      (!deforms                    ? "'Physics' is not elasticity." :
-                       scene.cracks.cracks.empty() ? "section 'Cracks' has no crack." :
-                                                     "only two dimensions have it."));
+    refuse_measure(scene);
   }
 
 

@@ -8,6 +8,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/rules.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/run_files.h>
 #include <perideal/simulation/simulation.h>
@@ -423,7 +424,7 @@ namespace PeriDeal
       return Simulation<dim>(scene, text, communicator, quiet).run(mode);
     AssertThrow(mode != RunMode::resume,
                 UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
-    require_choice(scene);
+    refuse_choice(scene);
     Choice<dim>(scene, text, communicator, quiet).run(mode);
   }
 
@@ -435,7 +436,7 @@ namespace PeriDeal
                        const bool        quiet)
   {
     const Progress progress(communicator, quiet);
-    require_choice(scene);
+    refuse_choice(scene);
     const bool               is_nonlocal = scene.peridynamics.horizon > 0.;
     const Attempts<dim>      attempts(scene,
                                  is_nonlocal ? LimitOfAttempts::nonlocal :

@@ -333,8 +333,8 @@ namespace PeriDeal
           {
             const KernelWeights<dim> weights({bonds.kernel,
                                               bonds.kernel_exponent,
-                                              bonds.volume_fraction,
-                                              bonds.calibration,
+                                              bonds.sampling.volume_fraction,
+                                              bonds.sampling.calibration,
                                               SelfTerm::none,
                                               ratio.get<double>()},
                                              spacing,

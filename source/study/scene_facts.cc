@@ -3,6 +3,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
+#include <perideal/scene/rules.h>
 #include <perideal/solvers/stepper.h>
 #include <perideal/study/cracked_box.h>
 #include <perideal/study/scene_facts.h>
@@ -24,7 +25,7 @@ namespace PeriDeal
     {
       try
         {
-          require_choice(scene);
+          refuse_choice(scene);
         }
       catch (const UserError &error)
         {
@@ -71,10 +72,11 @@ namespace PeriDeal
         }
       return {{"kernel", name_of(bonds.kernel)},
               {"kernel exponent", bonds.kernel_exponent},
-              {"volume fraction", name_of(bonds.volume_fraction)},
-              {"calibration", bonds.calibration == Calibration::discrete ? "discrete" : "analytic"},
+              {"volume fraction", name_of(bonds.sampling.volume_fraction)},
+              {"calibration",
+               bonds.sampling.calibration == Calibration::discrete ? "discrete" : "analytic"},
               {"m", ratio},
-              {"break", scene.material.fracture_energy || scene.material.critical_stretch}};
+              {"break", scene.material.breaks()}};
     }
 
 

@@ -80,7 +80,7 @@ namespace
       this->nodes      = std::make_unique<Nodes<dim>>(this->handler,
                                                  scene.domain,
                                                  scene.cracks,
-                                                 alone ? scene.peridynamics.nodal_volume :
+                                                 alone ? scene.peridynamics.sampling.nodal_volume :
                                                               NodalVolume::partial);
       if (alone)
         this->bonds = std::make_unique<BondOperator<dim>>(*this->nodes, scene);

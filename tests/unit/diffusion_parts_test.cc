@@ -39,7 +39,7 @@ namespace PeriDeal
         , nodes(problem.handler,
                 problem.scene.domain,
                 problem.scene.cracks,
-                problem.scene.peridynamics.nodal_volume)
+                problem.scene.peridynamics.sampling.nodal_volume)
         , families(nodes.find_parts(problem.scene.boundary_conditions), problem.scene)
         , bonds(families, problem.scene)
         , constraints(bonds, problem.scene)

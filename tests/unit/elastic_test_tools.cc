@@ -45,7 +45,7 @@ namespace PeriDeal
           nodes  = std::make_unique<Nodes<dim>>(handler,
                                                scene.domain,
                                                scene.cracks,
-                                               scene.peridynamics.nodal_volume);
+                                               scene.peridynamics.sampling.nodal_volume);
           states = std::make_unique<StateOperator<dim>>(*nodes, scene);
         }
     }

@@ -42,7 +42,7 @@ namespace PeriDeal
             face->set_boundary_id(0);
         mesh.copy_triangulation(ring);
         mesh.refine_global(1);
-        body.steady                    = true;
+        body.run.steady                = true;
         body.initial_and_source.source = Expression(1.);
         body.set_own_mesh(0.1);
         body.boundary_conditions.prescribe(0, Expression(0.));

@@ -3,6 +3,8 @@
 
 // Entries that are wrong by themselves or beside others: what is said about them.
 
+#include <perideal/scene/rules.h>
+
 #include "scene_tables.h"
 
 namespace PeriDeal
@@ -254,6 +256,85 @@ Cracks/Paths=2: 0, 0.5,0.5 | 1, 0.9,0.5 => 'Paths' | begins at (0.5, 0.5)
 Cracks/Growth=2: 0, 0.1,0 & Cracks/Mesh=faces => 'Mesh' | 'pairs'
 Cracks/Transmission=10000*t => 'Transmission' | from 0 to 1
 Finite elements/Degree=2 => 'Degree' | pairs
+)");
+  }
+
+
+  TEST(SceneMistakes, of_entries_together)
+  {
+    expect_said({}, R"(
+Peridynamics/Boundary treatment=exchange & Peridynamics/Self term=paper => 'Self term' | not 'none' | 'Boundary treatment = exchange'
+Peridynamics/Boundary treatment=exchange & Peridynamics/Surface correction=energy => 'Surface correction' | without finite elements | 'Boundary treatment = exchange'
+Peridynamics/Boundary treatment=exchange & Peridynamics/Nodal volume=full => 'Nodal volume' | 'partial' | 'Boundary treatment = exchange'
+Peridynamics/Correction direction=z => 'Correction direction' | no such direction | 'Dimension' = 2
+Domain/Extra layers=2 => 'Extra layers' | 'Physics = elasticity'
+Models=finite elements & Cracks/Segments=0.25,0.5 ; 0.75,0.5 & Cracks/Mesh=faces & Cracks/Contact conductance=1 & Domain/Coarsening=1 => 'Contact conductance' | 'Coarsening' | 'pairs'
+Models=coupled & Cracks/Segments=0.25,0.5 ; 0.75,0.5 & Cracks/Mesh=faces & Coupling/Zone=adaptive & Domain/Coarsening=1 => 'Zone' | lie across cells | 'faces'
+Models=finite elements & Domain/Coarsening=1 & Domain/Fine where=crack ends => 'Coarsening' | 'crack ends' | no crack
+)");
+    expect_said(elastic, R"(
+Dimension=3 & Domain/Lower corner=0, 0, 0 & Domain/Upper corner=1, 1, 1 & Domain/Cells=4, 4, 4 & Output/Probes= & Boundary conditions/Displacement=left: 0, 0, 0 & Cracks/Polygons=disc: 0.5,0.5,0.5, 0,0,1, 0.2 & Cracks/Bonds through tips=in part => 'Bonds through tips' | 'Dimension = 2'
+Models=coupled & Coupling/Zone=x - 0.5 & Coupling/Scheme=splice & Peridynamics/Surface correction=fictitious nodes & Boundary conditions/Symmetry=bottom => 'Surface correction' | 'Symmetry' | 'blending'
+Models=finite elements & Peridynamics/Operator form=lattice => 'Operator form' | without 'Models = peridynamics' | 'auto'
+Models=finite elements & Boundary conditions/Traction=right: 1, 0 & Boundary conditions/Traction layer=0.1 => 'Traction layer' | no effect without 'Models = peridynamics'
+Models=finite elements & Elasticity/Contact=true => 'Contact' | no effect | 'Models = peridynamics'
+)");
+    expect_said(
+      elastic_and({"Domain/Shape=mesh file",
+                   "Domain/Mesh file=" PERIDEAL_SOURCE_DIR "/tests/data/two_materials.msh",
+                   "Peridynamics/Horizon=0.3",
+                   "Boundary conditions/Displacement=1: 0, 0"}),
+      R"(
+Cracks/Segments=0.25,0.5 ; 0.75,0.5 & Cracks/Bonds through tips=in part => 'Bonds through tips' | bodies on a lattice
+Peridynamics/Surface correction=fictitious nodes => 'Surface correction' | flat sides
+Models=coupled & Coupling/Zone=x - 0.5 & Coupling/Scheme=splice => 'Shape' | 'Scheme = exchange'
+)");
+    expect_said(elastic_and({"Elasticity/Temperature change=computed",
+                             "Elasticity/Heat of deformation=true",
+                             "Elasticity/Absolute zero=-273",
+                             "Material/Thermal expansion=1e-3"}),
+                R"(
+Material/Heat capacity=1 + T => 'Heat of deformation' | 'Heat capacity' | not depend on T
+Finite elements/Capacity=consistent => 'Heat of deformation' | 'lumped'
+Models=finite elements & Domain/Coarsening=1 & Domain/Fine where=x - 0.5 => 'Heat of deformation' | 'Coarsening'
+)");
+  }
+
+
+  TEST(SceneMistakes, of_models_that_are_chosen)
+  {
+    const auto expect_not_chosen = [](const Overrides &further, const std::string &table) {
+      for (const FaultRow &row : fault_rows(table))
+        {
+          SCOPED_TRACE(row.left);
+          Overrides overrides = plate;
+          overrides.insert(overrides.end(), further.begin(), further.end());
+          for (const std::string &one : split_list(row.left + " & Models=auto", '&'))
+            overrides.push_back(one);
+          Scene<2> scene;
+          parse_scene<2>({"a.prm", apply_overrides("set Dimension = 2\n", "a.prm", overrides)},
+                         scene);
+          expect_parts(message_of([&] {
+                         refuse_choice(scene);
+                         refuse_measure(scene);
+                       }),
+                       row.words);
+        }
+    };
+    expect_not_chosen({}, R"(
+Domain/Shape=plate with hole & Output/Probes= => other than a box
+Cracks/Segments=0.25,0.5 ; 0.75,0.5 & Cracks/Growth=2: 0, 0.1,0 & Peridynamics/Horizon=0.3 => grow or change
+Cracks/Segments=0.25,0.5 ; 0.75,0.5 & Cracks/Transmission=0.5 => 'Transmission' of cracks | 'Contact conductance'
+Output/Probes= & Accuracy/Measure=probes => 'Measure' | has no point
+Accuracy/Measure=stress intensity => 'Measure' | not elasticity
+)");
+    expect_not_chosen(elastic, R"(
+Elasticity/Solver=dynamics & Peridynamics/Horizon=0.3 => motion with cracks
+Boundary conditions/Traction=right: t, 0 => loads change with time
+Elasticity/Temperature change=computed & Material/Thermal expansion=1 & Time/Steady=true & Boundary conditions/Dirichlet=left: 0 => a computed temperature
+Material/Critical stretch=0.1 => bonds that break
+Accuracy/Measure=flow: left => 'Measure' | nothing flows
+Accuracy/Measure=stress intensity => 'Measure' | has no crack
 )");
   }
 

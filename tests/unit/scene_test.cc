@@ -117,10 +117,10 @@ end
     EXPECT_LT(scene.cracks.contact_conductance, 0.);
     EXPECT_EQ(scene.peridynamics.kernel, KernelShape::constant);
     EXPECT_EQ(scene.peridynamics.kernel_exponent, 1u);
-    EXPECT_EQ(scene.peridynamics.volume_fraction, VolumeFraction::exact);
-    EXPECT_EQ(scene.peridynamics.calibration, Calibration::analytic);
-    EXPECT_EQ(scene.peridynamics.self_term, SelfTerm::paper);
-    EXPECT_EQ(scene.peridynamics.nodal_volume, NodalVolume::full);
+    EXPECT_EQ(scene.peridynamics.sampling.volume_fraction, VolumeFraction::exact);
+    EXPECT_EQ(scene.peridynamics.sampling.calibration, Calibration::analytic);
+    EXPECT_EQ(scene.peridynamics.sampling.self_term, SelfTerm::paper);
+    EXPECT_EQ(scene.peridynamics.sampling.nodal_volume, NodalVolume::full);
     EXPECT_EQ(scene.peridynamics.treatment, BoundaryTreatment::fictitious_mirror);
     EXPECT_EQ(scene.peridynamics.layer_rows, 2u);
     EXPECT_EQ(scene.peridynamics.flux_treatment, FluxTreatment::extrapolation);

@@ -6,6 +6,7 @@
 #include <perideal/bonds/families.h>
 #include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/body_parameters.h>
+#include <perideal/scene/rules.h>
 
 #include <array>
 #include <vector>
@@ -55,8 +56,8 @@ namespace PeriDeal
       double            volume = 0.;
     };
 
-    /** Throws UserError for a body that does not go on beyond its sides. Not collective. */
-    static void require(const BodyParameters<dim> &body);
+    /** What a body has to be (scene/rules.h). */
+    static constexpr auto require = &refuse_beyond_sides<dim>;
 
     FictitiousExtension(const Families<dim>                   &families,
                         const std::array<BeyondSide, 2 * dim> &beyond);

@@ -51,13 +51,6 @@ namespace PeriDeal
 
 
   /**
-   * Throws UserError for a body whose sides have no fictitious nodes, or no layer in their place,
-   * though `Boundary treatment` or `Symmetry` asks for them. Not collective.
-   */
-  template <int dim>
-  void require_fictitious_nodes(const BodyParameters<dim> &body);
-
-  /**
    * All fictitious nodes that local nodes of this process may be bonded to.
    * @param reach largest offset of a family in each direction, in lattice spacings
    * Throws UserError if a side that needs such a layer is not flat or if the body is narrower than

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/laws/lattice_family.h>
+#include <perideal/scene/rules.h>
 
 #include <optional>
 #include <vector>
@@ -33,8 +34,8 @@ namespace PeriDeal
   class KernelWeights
   {
   public:
-    /** Throws UserError for a body in which there are none. Not collective. */
-    static void require(const BodyParameters<dim> &body);
+    /** What a body has to be (scene/rules.h). */
+    static constexpr auto require = &refuse_families<dim>;
 
     /**
      * Throws UserError as lattice_family() does.

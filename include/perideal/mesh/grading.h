@@ -29,12 +29,6 @@ namespace PeriDeal
   public:
     using Cell = typename dealii::Triangulation<dim>::cell_iterator;
 
-    /**
-     * Throws UserError for a scene whose mesh cannot be coarse where `Coarsening` has it so, or
-     * cannot follow the cracks though `Zone` is `adaptive`. Not collective.
-     */
-    static void require(const Scene<dim> &scene);
-
     /** @param mesh that of the scene, or its coarse cells; on every process */
     Grading(const Scene<dim> &scene, const dealii::Triangulation<dim> &mesh);
 

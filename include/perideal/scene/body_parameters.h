@@ -34,9 +34,15 @@ namespace PeriDeal
     ElasticityControl       elasticity;
     FiniteElements          finite_elements;
 
-    bool   deforms   = false; // a solid; else diffusion
-    bool   steady    = false; // nothing is stored
-    double time_step = -1.;   // of diffusion with a given step; negative: none is given
+    bool deforms = false; // a solid; else diffusion
+
+    struct Run
+    {
+      bool   steady    = false; // nothing is stored
+      double time_step = -1.;   // of diffusion with a given step; negative: none is given
+    };
+
+    Run run;
 
     /**
      * Diffusion: a solid on the same nodes may break its bonds (ChangeSet::broken), which then

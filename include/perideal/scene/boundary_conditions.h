@@ -214,11 +214,7 @@ namespace PeriDeal
     template <typename Condition, typename Read>
     std::vector<Condition> parse_list(const std::string &entry, const Read &read);
 
-    void parse_transfers();
-
     void parse_symmetry();
-
-    std::vector<VectorCondition> parse_vectors(const std::string &entry);
 
     void refuse_other_physics(const Physics physics, const bool with_heat) const;
 
@@ -228,12 +224,6 @@ namespace PeriDeal
      */
     void check_scalar_conditions() const;
     void check_vector_conditions() const;
-
-    /** The error that a condition is on a side that another entry names, too. */
-    template <typename Condition>
-    [[noreturn]] void refuse_both(const std::string &entry,
-                                  const Condition   &condition,
-                                  const std::string &other_entry) const;
 
     bool box_sides = true, has_hole = false;
     std::map<dealii::types::boundary_id, std::string>

@@ -78,8 +78,15 @@ namespace PeriDeal
     }
 
     /** The entries `Zone` and `Scheme` as given. */
-    std::string zone_text() const;
-    std::string scheme_text() const;
+    std::string zone_text() const
+    {
+      return text("Zone") != "auto" ? text("Zone") : follows_stretches() ? "follow" : "cracks: 1";
+    }
+
+    const std::string &scheme_text() const
+    {
+      return text("Scheme");
+    }
 
   private:
     void parse_zone();

@@ -7,10 +7,15 @@
 
 #include <perideal/scene/crack_tips.h>
 
+#include <optional>
 #include <vector>
 
 namespace PeriDeal
 {
+  /** Twice the area of a planar polygon times its right-hand normal. */
+  dealii::Tensor<1, 3> doubled_area_vector(const std::vector<dealii::Point<3>> &corners);
+
+
   /**
    * One straight piece of a crack: a segment in 2D, a planar polygon in 3D. Pure geometry.
    *
@@ -103,6 +108,10 @@ namespace PeriDeal
     unsigned int crack = 0; // that this is a piece of
 
   private:
+    /** Where the line between two points on both sides crosses the crack's line or plane. */
+    std::optional<dealii::Point<dim>> crossing(const dealii::Point<dim> &a,
+                                               const dealii::Point<dim> &b) const;
+
     bool plane_point_inside(const dealii::Point<dim> &p, const bool with_tips) const;
 
     std::vector<dealii::Point<dim>> corner_points;

@@ -52,9 +52,15 @@ namespace PeriDeal
     double representative(const double t) const;
 
     /** The pieces of all cracks, whole history included, at that very time. */
-    std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const;
+    std::vector<CrackPiece<dim>> pieces(const double t, const bool cut_at_tips = true) const
+    {
+      return cracks->pieces(t, cut_at_tips);
+    }
 
-    double transmission(const double t) const;
+    double transmission(const double t) const
+    {
+      return cracks->transmission.value(dealii::Point<dim>(), t);
+    }
 
     /**
      * What changes from the cracks of a representative time to those that hold at t; nothing if
@@ -69,10 +75,16 @@ namespace PeriDeal
     std::vector<dealii::BoundingBox<dim>> changes(const double t_1, const double t_2) const;
 
     /** Something changes at some time. */
-    bool changes_ever() const;
+    bool changes_ever() const
+    {
+      return cracks->change();
+    }
 
     /** Some bond or pair may conduct again after it was cut, so that rates can grow. */
-    bool may_close() const;
+    bool may_close() const
+    {
+      return !cracks->cracks.empty() && cracks->transmission.depends_on_time();
+    }
 
     const std::vector<double> &events() const
     {
@@ -87,9 +99,9 @@ namespace PeriDeal
 
   private:
     double begin_of_span(const double t) const; // that holds t: an event, or 0
-    void   add_growth_events(const double step, const double end_time, const double time_step);
-    void   add_transmission_events(const double end_time);
-    void   refine_transmission(const double a, const double b, const double end_time);
+    void   add_growth_events(const double step, const double time_step);
+    void   add_transmission_events();
+    void   refine_transmission(const double a, const double b);
     double checked_transmission(const double t) const;
 
     const Cracks<dim>  *cracks;

@@ -103,10 +103,17 @@ namespace PeriDeal
     }
 
     /** Cracks or their transmission change with time. */
-    bool change() const;
+    bool change() const
+    {
+      return !tips.empty() || (!cracks.empty() && transmission.depends_on_time());
+    }
 
     /** Some heat may pass through a crack at some time. */
-    bool conduct() const;
+    bool conduct() const
+    {
+      return !transmission.is_constant() || transmission.value(dealii::Point<dim>()) > 0. ||
+             contact_conductance > 0.;
+    }
 
     /**
      * The pieces of all cracks at time t, the whole path of each tip included. With @p cut_at_tips
@@ -119,33 +126,39 @@ namespace PeriDeal
     double distance_to_side(const dealii::types::boundary_id side) const;
 
     /** What `Bonds through tips` means for bonds with this correction. */
-    bool cuts_bonds_at_tips(const SurfaceCorrection correction) const;
+    bool cuts_bonds_at_tips(const SurfaceCorrection correction) const
+    {
+      return through_tips == ThroughTips::cut ||
+             (through_tips == ThroughTips::automatic && correction != SurfaceCorrection::energy);
+    }
 
     /**
      * The box that the body fills, so that ends on its sides are known. Without it any end may lie
      * on the surface of the body.
      */
-    void set_box(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper);
+    void set_box(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper)
+    {
+      lowest  = lower;
+      highest = upper;
+      in_box  = true;
+    }
 
-    /** Throws UserError naming the first crack that lies completely outside a box. */
-    void check_inside(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper) const;
+    /**
+     * Throws UserError naming the first crack that lies completely outside the box, or the first
+     * tip that leaves it before the end of the run.
+     */
+    void check_inside() const;
 
     /** What the user should know of cracks that are partly outside a box. */
     std::vector<std::string> parts_outside(const dealii::Point<dim> &lower,
                                            const dealii::Point<dim> &upper) const;
 
-    /** Throws UserError naming the first tip that leaves a box before the end of the run. */
-    void check_tips_inside(const dealii::Point<dim> &lower,
-                           const dealii::Point<dim> &upper,
-                           const double              end_time) const;
-
     /** Throws UserError naming the entry that makes this tip move. */
     [[noreturn]] void tip_error(const CrackTip<dim> &tip, const std::string &what) const;
 
   private:
-    void parse_segments();
-
-    void parse_polygons();
+    /** `Segments` and `Polygons`. */
+    void parse_corners();
 
     void parse_conductance();
 
@@ -155,7 +168,7 @@ namespace PeriDeal
 
     CrackTip<dim> tip_of(const std::string &number, const std::string &entry) const;
 
-    void check_tips() const;
+    bool grows(const unsigned int crack) const;
 
     /** 2D: no tip goes back on its own path; @p last is a time after all stops. */
     void check_turns(const double last) const;

@@ -71,7 +71,6 @@ namespace PeriDeal
     std::array<unsigned int, dim> cells;
     NodePlacement                 nodes = NodePlacement::vertices;
     Holes<dim>                    holes; // of a plate with holes
-    std::string                   mesh_file;
 
     /** Cells are merged, so many times, away from where they stay fine. */
     struct Coarsening
@@ -94,7 +93,6 @@ namespace PeriDeal
     };
     ExtraLayers extra;
 
-    std::string               image_file;
     std::shared_ptr<PhaseMap> image; // of `Shape = image`, else null
     std::vector<std::string>  notes; // on the image and the cracks, for the user
 
@@ -110,6 +108,8 @@ namespace PeriDeal
     /** Files are looked for here, too, and read by the processes of this communicator together. */
     struct Files
     {
+      std::string mesh, image;
+      bool        own_mesh = false; // of a program, which asks for no file
       std::string folder;
       MPI_Comm    communicator = MPI_COMM_SELF;
     };
@@ -135,11 +135,6 @@ namespace PeriDeal
     {
       return nodes == NodePlacement::cell_centers;
     }
-
-    /** Refuse what an entry of another section has chosen on a mesh from a file. */
-    void require_lattice(const bool         chosen,
-                         const std::string &where,
-                         const std::string &choice) const;
 
     /** Box and plate with a hole: edge length of a lattice cell in each direction. */
     dealii::Tensor<1, dim> spacing() const;
@@ -178,7 +173,10 @@ namespace PeriDeal
     /**
      * Whether what is at a point of the mesh belongs to the results: anywhere but in extra layers.
      */
-    bool shows(const dealii::Point<dim> &p) const;
+    bool shows(const dealii::Point<dim> &p) const
+    {
+      return !has_extra_layers() || contains(p);
+    }
 
     /** The image without extra layers. */
     PhaseMap image_of_body() const;
@@ -197,9 +195,5 @@ namespace PeriDeal
 
     unsigned int count(const std::string &entry) const;
     void         parse_image();
-    void         refuse_image_entries() const;
-    void         set_size_of_image();
-
-    bool own_mesh = false;
   };
 } // namespace PeriDeal

@@ -39,10 +39,16 @@ namespace PeriDeal
     }
 
     /** Strains are those of the deformed bonds. */
-    bool has_full_kinematics() const;
+    bool has_full_kinematics() const
+    {
+      return kinematics == Kinematics::full;
+    }
 
     /** All solvers but `dynamics` find the equilibrium, in which there is no time. */
-    bool is_static() const;
+    bool is_static() const
+    {
+      return solver != ElasticSolver::dynamics;
+    }
 
     /** `Contact = true` is given. */
     bool contact_is_asked() const
@@ -63,7 +69,10 @@ namespace PeriDeal
     }
 
     /** `conjugate gradients` and so on, as in scenes. */
-    const std::string &solver_name() const;
+    const std::string &solver_name() const
+    {
+      return text("Solver");
+    }
 
     /**
      * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there

@@ -8,6 +8,7 @@
 #include <perideal/base/user_error.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,9 @@ namespace PeriDeal
     return name.find_first_of(":;,()|") == std::string::npos ? name : '"' + name + '"';
   }
 
+  /** A decimal number, infinite if it is too large, or nothing if the text is anything else. */
+  std::optional<double> plain_number(const std::string &text);
+
   /** A finite decimal number and nothing else. */
   double parse_number(const std::string &text, const std::string &where);
 
@@ -89,6 +93,16 @@ namespace PeriDeal
                                     const unsigned int n,
                                     const std::string &what,
                                     const std::string &where);
+
+  /** The point of the first dim of these coordinates. */
+  template <int dim>
+  dealii::Point<dim> point_of(const double *x)
+  {
+    dealii::Point<dim> p;
+    std::copy_n(x, dim, p.begin_raw());
+    return p;
+  }
+
 
   /** dim coordinates separated by commas. */
   template <int dim>

@@ -53,7 +53,16 @@ namespace PeriDeal
       Expression              bond_force; // formula: of the stretch s and the damage
     } law;
 
-    bool uniform_conductivity() const;
+    /** Bonds may break. */
+    bool breaks() const
+    {
+      return fracture_energy || critical_stretch;
+    }
+
+    bool uniform_conductivity() const
+    {
+      return conductivity.is_constant();
+    }
 
     /** rho c at a point. */
     template <int dim>
@@ -77,7 +86,10 @@ namespace PeriDeal
                     const Expression &value_b);
 
     /** The same moduli in the whole body, given by numbers. */
-    bool uniform_moduli() const;
+    bool uniform_moduli() const
+    {
+      return given.are_uniform();
+    }
 
     /**
      * The storage may be 0 with electricity only, which is then steady. With elasticity exactly two
@@ -103,9 +115,6 @@ namespace PeriDeal
   private:
     Expression read(const std::string &entry, const Physics physics) const;
 
-    /** The storage may be 0 as far as this entry goes. */
-    bool may_vanish(const std::string &entry, const Physics physics) const;
-
     std::optional<MaterialProperty> optional_property(const std::string &entry,
                                                       const Physics      physics) const;
 
@@ -113,17 +122,20 @@ namespace PeriDeal
 
     void parse_moduli(const unsigned int dim, const PlaneState plane);
 
-    /** What is wrong with two numbers, or nothing. */
-    std::string fault_of_moduli(const double value_a, const double value_b) const;
-
-    /** Two of the four. */
-    struct
+    /** Two moduli, of which the others follow. */
+    struct GivenModuli
     {
       std::array<Modulus, 2>          which{{Modulus::bulk, Modulus::shear}};
-      std::array<MaterialProperty, 2> values;
+      std::array<MaterialProperty, 2> properties;
       bool                            may_be_incompressible = false;
-    } given_moduli;
-    bool needs_storage = true;
+
+      bool are_uniform() const;
+
+      /** What is wrong with two numbers, or nothing. */
+      std::string fault(const double value_a, const double value_b) const;
+    };
+
+    GivenModuli given;
   };
 
 

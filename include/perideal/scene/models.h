@@ -21,10 +21,6 @@ namespace PeriDeal
     double              horizon;       // length; negative: not given
     KernelShape         kernel;
     unsigned int        kernel_exponent = 2;
-    VolumeFraction      volume_fraction;
-    Calibration         calibration;
-    SelfTerm            self_term;
-    NodalVolume         nodal_volume;
     BoundaryTreatment   treatment; // resolved by Scene
     unsigned int        layer_rows;
     FluxTreatment       flux_treatment;
@@ -32,6 +28,17 @@ namespace PeriDeal
     CorrectionDirection correction_direction;
     BondsAcrossVoids    across_voids;
     OperatorForm        form;
+
+    /** How sums over nodes stand for integrals over families. */
+    struct Sampling
+    {
+      VolumeFraction volume_fraction;
+      Calibration    calibration;
+      SelfTerm       self_term;
+      NodalVolume    nodal_volume;
+    };
+
+    Sampling sampling;
 
     /** Fluxes are sources in the outermost nodes: no values there follow from others. */
     bool natural_fluxes() const
@@ -57,16 +64,30 @@ namespace PeriDeal
     }
 
     /** The prescribed values are those of nodes beyond the sides. */
-    bool has_fictitious_nodes() const;
+    bool has_fictitious_nodes() const
+    {
+      return treatment == BoundaryTreatment::fictitious_mirror ||
+             treatment == BoundaryTreatment::fictitious_constant;
+    }
 
     /** What is beside a crack makes up for what the crack cuts (CrackSideFactors). */
-    bool scales_beside_cracks() const;
+    bool scales_beside_cracks() const
+    {
+      return surface_correction == SurfaceCorrection::crack_scaling;
+    }
 
     /** The surface correction is one of the linear peridynamic solid. */
-    bool corrects_elastic_bonds() const;
+    bool corrects_elastic_bonds() const
+    {
+      return surface_correction == SurfaceCorrection::energy ||
+             surface_correction == SurfaceCorrection::moments;
+    }
 
     /** Elastic families go on beyond the sides of the body (FictitiousExtension). */
-    bool completes_families() const;
+    bool completes_families() const
+    {
+      return surface_correction == SurfaceCorrection::fictitious_nodes;
+    }
 
     /** Throws UserError for values out of range and contradicting entries. */
     void parse(const Physics physics = Physics::heat);

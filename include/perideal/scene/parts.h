@@ -7,6 +7,7 @@
 #include <deal.II/base/types.h>
 
 #include <perideal/scene/expression.h>
+#include <perideal/scene/lists.h>
 
 #include <array>
 #include <string>
@@ -50,24 +51,18 @@ namespace PeriDeal
     template <int dim>
     dealii::Point<dim> position() const
     {
-      dealii::Point<dim> p;
-      for (unsigned int d = 0; d < dim; ++d)
-        p[d] = place[d];
-      return p;
+      return point_of<dim>(place.data());
     }
   };
 
 
-  /** What stands behind a part's name: `SIDE if FORMULA`, `region FORMULA` or `point X, Y[, Z]`. */
-  struct PartText
-  {
-    Part::Kind  kind;
-    std::string side, rest; // formula or coordinates
-  };
-
-  /** @param where entry, section and part for messages. Throws UserError. */
-  PartText split_part(const std::string &text, const std::string &where);
-
-  /** The formula of a part: of x, y, z alone. Throws UserError. */
-  Expression part_formula(const std::string &text, const std::string &where);
+  /**
+   * What stands behind a part's name, `SIDE if FORMULA` of x, y, z, `region FORMULA` or `point X,
+   * Y[, Z]`; with the name of its side, for which the part has no number yet.
+   * @param where entry, section and part for messages. Throws UserError.
+   */
+  Part parse_part(const std::string &text,
+                  const unsigned int dim,
+                  const std::string &where,
+                  std::string       &side);
 } // namespace PeriDeal

@@ -121,11 +121,17 @@ namespace PeriDeal
      *                    moisture)
      */
     template <int dim>
-    double value(const dealii::Point<dim> &p, const double temperature = 0.) const;
+    double value(const dealii::Point<dim> &p, const double temperature = 0.) const
+    {
+      return formula_at(p).value(p, 0., temperature);
+    }
 
     /** Expression::marked_temperatures() of the formula at a point. */
     template <int dim>
-    const std::vector<double> &marked_temperatures(const dealii::Point<dim> &p) const;
+    const std::vector<double> &marked_temperatures(const dealii::Point<dim> &p) const
+    {
+      return formula_at(p).marked_temperatures();
+    }
 
     /** One number in the whole body. */
     bool is_constant() const;
@@ -182,15 +188,11 @@ namespace PeriDeal
     /**
      * Throws UserError: names twice, regions without a material that the physics takes, materials
      * of regions that do not exist, wrong formulas.
-     * @param image      whose phases are phases of the material, or null
-     * @param may_vanish which of the entries that have to be positive may be 0
+     * @param image whose phases are phases of the material, or null
      */
-    void parse(
-      const Physics                                  physics    = Physics::heat,
-      const std::shared_ptr<const PhaseMap>         &image      = nullptr,
-      const std::function<bool(const std::string &)> may_vanish = [](const std::string &) {
-        return false;
-      });
+    void parse(const Physics                          physics       = Physics::heat,
+               const std::shared_ptr<const PhaseMap> &image         = nullptr,
+               const bool                             needs_storage = true);
 
     /** The property of that name, with the value elsewhere from section `Material`. */
     MaterialProperty property(const std::string &entry, const Expression &elsewhere) const;
@@ -203,10 +205,11 @@ namespace PeriDeal
       return *regions;
     }
 
+    bool needs_storage = true; // else densities and heat capacities may be 0
+
   private:
     std::vector<std::optional<Expression>> read(const std::string &entry) const;
 
-    std::function<bool(const std::string &)> may_vanish;
 
     std::shared_ptr<const Regions> regions;
     bool                           elastic = false;

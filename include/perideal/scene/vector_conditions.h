@@ -74,16 +74,6 @@ namespace PeriDeal
                                        const std::string &where,
                                        const std::string &known = "x, y, z, t");
 
-  /** The two formulas that `if(y < 1, 0, free)` stands for. */
-  struct FreeBranch
-  {
-    std::string value; // `free` is 0 in it
-    std::string held;  // 1 where there is a value, 0 where `free`; empty: no `free` in the text
-  };
-
-  /** `free` alone or as a whole branch of `if(condition, a, b)`; UserError elsewhere. */
-  FreeBranch split_free(const std::string &text, const std::string &where);
-
   /**
    * The integral of a rate over time, from @p from to @p to at a place: adaptive Simpson rule,
    * exact for constants.

@@ -40,7 +40,10 @@ namespace PeriDeal
      * Formulas need no values outside of this box, the body's: no part of the zone is looked for
      * there.
      */
-    void stay_in(const dealii::BoundingBox<dim> &body);
+    void stay_in(const dealii::BoundingBox<dim> &box)
+    {
+      body = box;
+    }
 
     /** The cracks from whose pieces the distance counts. */
     void set_cracks(std::vector<CrackPiece<dim>> pieces);
@@ -56,13 +59,22 @@ namespace PeriDeal
     /** 1 in the zone, falling linearly to 0 over a width outside of it. */
     double weight(const dealii::Point<dim> &p, const double width_outside) const;
 
-    bool is_everywhere() const;
+    bool is_everywhere() const
+    {
+      return kind == ZoneKind::everywhere;
+    }
 
     /** The zone changes with the cracks. */
-    bool follows_cracks() const;
+    bool follows_cracks() const
+    {
+      return kind == ZoneKind::near_cracks || kind == ZoneKind::adaptive || follows_stretches();
+    }
 
     /** All of the body may join the zone. */
-    bool follows_stretches() const;
+    bool follows_stretches() const
+    {
+      return kind == ZoneKind::follow;
+    }
 
     /** Distance from a crack that is still in the zone. */
     double width() const

@@ -28,46 +28,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Coupling<dim>::require(const BodyParameters<dim> &body)
-  {
-    const CouplingControl &control  = body.coupling;
-    const auto             obstacle = body.obstacle_to_bonds_on_elements();
-    if (!obstacle.first.empty())
-      entry_error(obstacle.first, obstacle.second + ", for 'Models = coupled'.");
-    control.refuse(
-      dim == 1 && control.is_near_cracks(),
-      "Zone",
-      "'" + control.zone_text() +
-        "' needs a crack, and bodies of 'Dimension' 1 have none. Give a formula of x, or 'everywhere'.");
-    control.refuse(
-      (control.is_near_cracks() || control.is_adaptive()) && body.cracks.cracks.empty(),
-      "Zone",
-      "'" + control.zone_text() +
-        "' lies around cracks, but section 'Cracks' has none: the zone is empty. Give a formula, or 'everywhere'" +
-        (body.material.fracture_energy || body.material.critical_stretch ?
-           ", or 'follow', with which bonds appear where the body is about to break." :
-           "."));
-    double widest = 0.;
-    for (unsigned int d = 0; d < dim; ++d)
-      widest = std::max(widest, body.domain.upper[d] - body.domain.lower[d]);
-    const double overlap =
-      body.domain.has_lattice() && control.overlap > 0. ? control.overlap * body.horizon() : 0.;
-    control.refuse(overlap > widest,
-                   "Overlap",
-                   "is " + number_text(control.overlap) + " horizons, " + number_text(overlap) +
-                     ", wider than the body, " + number_text(widest) + ".");
-    body.finite_elements.refuse(
-      body.finite_elements.degree > 1,
-      "Degree",
-      "found " + std::to_string(body.finite_elements.degree) +
-        "; bonds and elements share the nodes of elements of degree 1 ('Models = coupled').");
-    KernelWeights<dim>::require(body);
-    if (!body.deforms)
-      require_fictitious_nodes(body);
-  }
-
-
-  template <int dim>
   double Coupling<dim>::zone_share() const
   {
     return families().nodes().volume_share([&](const unsigned int i) { return in_zone(i); });
@@ -130,9 +90,7 @@ namespace PeriDeal
   PERIDEAL_INSTANTIATE_FUNCTION(make_coupling);
   PERIDEAL_INSTANTIATE_FUNCTION(make_solid_coupling);
 
-#define PERIDEAL_TEMPLATES(dim)                                        \
-  template void   Coupling<dim>::require(const BodyParameters<dim> &); \
-  template double Coupling<dim>::zone_share() const;
+#define PERIDEAL_TEMPLATES(dim) template double Coupling<dim>::zone_share() const;
   PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
 #undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

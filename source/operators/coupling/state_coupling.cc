@@ -13,47 +13,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void StateCoupling<dim>::require(const BodyParameters<dim> &body)
-  {
-    const Peridynamics      &pd      = body.peridynamics;
-    const ElasticityControl &control = body.elasticity;
-    const std::string        scheme =
-      "'Scheme = " + body.coupling.scheme_text() + "' in section 'Coupling'";
-    const bool splice = body.coupling.splices();
-    if (pd.completes_families())
-      FictitiousExtension<dim>::require(body);
-    pd.refuse(
-      pd.completes_families() && splice && !body.boundary_conditions.symmetry.empty(),
-      "Surface correction",
-      "'fictitious nodes' and 'Scheme = splice' do not go with 'Symmetry' in section 'Boundary conditions': nothing would tell its lost forces from those of the other half. "
-      "Hold the side by 'Displacement', or use 'blending'.");
-    body.cracks.refuse(
-      body.cracks.double_nodes(),
-      "Mesh",
-      "'faces' is for 'Scheme = exchange' in section 'Coupling': the families of others know one node at each place. Use 'removed'.");
-    body.domain.refuse(
-      !body.domain.has_lattice(),
-      "Shape",
-      "'mesh file' is for 'Scheme = exchange' in section 'Coupling': the families of others lie on a lattice. Use 'box' or 'plate with hole'.");
-    pd.refuse(pd.surface_correction != SurfaceCorrection::none &&
-                pd.surface_correction != SurfaceCorrection::automatic && !pd.completes_families(),
-              "Surface correction",
-              "is for 'Scheme = exchange', not for " + scheme +
-                "; use 'none' or 'fictitious nodes'.");
-    control.refuse(
-      dim > 1 && control.is_bond_based(),
-      "Model",
-      "'bond-based' is not for " + scheme +
-        ": its zone would have a Poisson ratio of its own. Use 'state-based', or 'Scheme = exchange'.");
-    control.refuse(splice && control.solver != ElasticSolver::linear,
-                   "Solver",
-                   "'" + control.solver_name() +
-                     "' needs forces that have an energy, which those of " + scheme +
-                     " have not. Use 'linear', or 'Scheme = blending'.");
-  }
-
-
-  template <int dim>
   StateCoupling<dim>::StateCoupling(Nodes<dim>                &nodes,
                                     const BodyParameters<dim> &body,
                                     const Zone<dim>           &zone,

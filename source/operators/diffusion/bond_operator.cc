@@ -25,22 +25,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void BondOperator<dim>::require(const BodyParameters<dim> &body)
-  {
-    DiffusionOperatorBase<dim>::require(body);
-    if (const auto obstacle = body.obstacle_to_bonds_on_elements();
-        body.peridynamics.treatment == BoundaryTreatment::exchange && !obstacle.first.empty())
-      entry_error(
-        obstacle.first,
-        obstacle.second +
-          ", for 'Boundary treatment = exchange'. Use 'Boundary treatment = none' (section 'Peridynamics') for bonds alone.");
-    KernelWeights<dim>::require(body);
-    require_fictitious_nodes(body);
-    NodeConstraints<dim>::require(body);
-  }
-
-
-  template <int dim>
   BondOperator<dim>::BondOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : FieldOperator<dim>(body,
                          0.,
@@ -89,7 +73,7 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = bonds.nodes();
     Trip              worst;
-    if (body.steady) // it only sets a scale then
+    if (body.run.steady) // it only sets a scale then
       {
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           capacity.local_element(i) = nodes.volume(i);

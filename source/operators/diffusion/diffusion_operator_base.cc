@@ -12,22 +12,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void DiffusionOperatorBase<dim>::require(const BodyParameters<dim> &body)
-  {
-    body.domain.refuse(body.domain.has_extra_layers(),
-                       "Extra layers",
-                       "is for 'Physics = elasticity'.");
-    body.peridynamics.refuse(
-      !body.domain.has_lattice() && !(body.peridynamics.horizon > 0.) && body.cracks.conduct() &&
-        body.cracks.contact_conductance < 0.,
-      "Horizon",
-      "is empty; 'Transmission' in section 'Cracks' is the fraction that bonds of one horizon keep, in finite "
-      "elements too, and a mesh file has no node spacing that 'Horizon ratio' could refer to: give a length, "
-      "or 'Contact conductance' in its place.");
-  }
-
-
-  template <int dim>
   DiffusionOperatorBase<dim>::DiffusionOperatorBase(const BodyParameters<dim>           &body,
                                                     const double                         start,
                                                     const Layout                        &layout,

@@ -27,20 +27,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void FEMOperator<dim>::require(const BodyParameters<dim> &body, const bool coupled)
-  {
-    DiffusionOperatorBase<dim>::require(body);
-    if (coupled)
-      return Coupling<dim>::require(body);
-    body.finite_elements.refuse(
-      body.finite_elements.degree > 1 && !body.cracks.cracks.empty() && body.cracks.cut_pairs(),
-      "Degree",
-      "found " + std::to_string(body.finite_elements.degree) +
-        "; cracks with 'Mesh' in section 'Cracks' = pairs need degree 1.");
-  }
-
-
-  template <int dim>
   FEMOperator<dim>::FEMOperator(const DoFHandler<dim>         &dof_handler,
                                 const BodyParameters<dim>     &body,
                                 std::unique_ptr<Coupling<dim>> coupling,
@@ -56,7 +42,7 @@ namespace PeriDeal
     , hanging(dofs, *layout)
     , contact(contact_pairs(dofs, body.cracks))
     , loads(dofs, layout, body.boundary_conditions, body.initial_and_source.source, hanging)
-    , cell_material(dofs, body.material, body.initial_and_source.initial_value, body.steady)
+    , cell_material(dofs, body.material, body.initial_and_source.initial_value, body.run.steady)
     , prescribed(dofs, *layout, body.boundary_conditions, hanging, loads.part_unknowns())
     , cells(dofs,
             cell_material,
@@ -200,7 +186,7 @@ namespace PeriDeal
   template <int dim>
   double FEMOperator<dim>::content(const Vector &u) const
   {
-    if (this->capacity_depends_on_solution() || body.steady)
+    if (this->capacity_depends_on_solution() || body.run.steady)
       return cell_material.content(u);
     double heat = 0.;
     for (unsigned int i = 0; i < capacity.locally_owned_size(); ++i)
@@ -363,7 +349,7 @@ namespace PeriDeal
       }
     if (Utilities::MPI::max(message.empty() ? 0 : 1, dofs.get_communicator()) > 0)
       throw_lowest_if_any(dofs.get_communicator(),
-                          lowest_material(dofs, body.material, body.steady, u));
+                          lowest_material(dofs, body.material, body.run.steady, u));
     throw_on_all_if_any(dofs.get_communicator(), message);
     find_bounds(all, sums);
   }

@@ -20,37 +20,6 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  void NodeConstraints<dim>::require(const BodyParameters<dim> &body)
-  {
-    const BoundaryConditions<dim> &bc = body.boundary_conditions;
-    if (body.peridynamics.natural_fluxes())
-      return;
-    const bool in_layers = body.peridynamics.extrapolates_layers();
-    for (const SurfaceTransfer &given : bc.transfers)
-      {
-        if (given.fixes_level())
-          continue;
-        const Part *const part    = bc.part(given.id);
-        const bool        of_side = part == nullptr || part->kind == Part::of_side;
-        bc.refuse(part != nullptr && (!of_side || in_layers),
-                  given.kind->entry,
-                  "the part '" + given.name +
-                    "' is not for 'Flux treatment' in section 'Peridynamics' = " +
-                    (of_side ? "layer extrapolation, which is for whole sides." :
-                               "extrapolation, which is for sides and their parts.") +
-                    " Use 'natural'.");
-        for (const SurfaceTransfer &other : bc.transfers)
-          bc.refuse(
-            other.fixes_level() && other.id == given.id,
-            other.kind->entry,
-            "the side '" + given.name + "' is named in '" + given.kind->entry +
-              "', too, and with 'Flux treatment' in section 'Peridynamics' = extrapolation its values "
-              "follow from the flux alone. Use 'natural' to have both.");
-      }
-  }
-
-
-  template <int dim>
   NodeConstraints<dim>::NodeConstraints(const DiffusionBonds<dim> &bonds,
                                         const BodyParameters<dim> &body)
     : nodes(bonds.nodes())

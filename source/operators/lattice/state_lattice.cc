@@ -16,8 +16,7 @@ namespace PeriDeal
              "with 'Kinematics = full' each bond has its own direction" :
            body.material.law.kind != SolidLaw::linear ?
              "with another 'Law' than 'linear' each bond answers by itself" :
-           body.elasticity.is_static() &&
-               (body.material.fracture_energy || body.material.critical_stretch) ?
+           body.elasticity.is_static() && body.material.breaks() ?
              "bonds may break in a body at rest" :
            body.peridynamics.corrects_elastic_bonds() ?
              "with 'Surface correction' bonds have factors of their own" :

@@ -9,6 +9,7 @@
 #include <perideal/operators/coupling/node_families.h>
 #include <perideal/operators/coupling/weighted_coupling.h>
 #include <perideal/scene/body_parameters.h>
+#include <perideal/scene/rules.h>
 
 #include <optional>
 #include <vector>
@@ -49,8 +50,8 @@ namespace PeriDeal
     using typename NodeFamilies<dim>::Family;
     using typename NodeFamilies<dim>::ThermalStrain;
 
-    /** Throws UserError for a body without such families. Not collective. */
-    static void require(const BodyParameters<dim> &body);
+    /** What a body has to be (scene/rules.h). */
+    static constexpr auto require = &refuse_coupled_families<dim>;
 
     /** As WeightedCoupling. */
     StateCoupling(Nodes<dim>                &nodes,

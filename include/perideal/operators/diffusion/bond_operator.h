@@ -21,9 +21,6 @@ namespace PeriDeal
   class BondOperator : public FieldOperator<dim>
   {
   public:
-    /** Throws UserError for a body that it cannot compute. Not collective. */
-    static void require(const BodyParameters<dim> &body);
-
     /**
      * Collective. Throws UserError, among others for isolated nodes, a storage that is not
      * positive, a form that does not suit.

@@ -20,9 +20,6 @@ namespace PeriDeal
   class DiffusionOperatorBase : public DiffusionOperator
   {
   public:
-    /** Throws UserError for a body in which no model can compute diffusion. Not collective. */
-    static void require(const BodyParameters<dim> &body);
-
     void initialize_vector(Vector &vector) const override
     {
       vector.reinit(layout);

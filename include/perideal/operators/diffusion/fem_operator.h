@@ -37,9 +37,6 @@ namespace PeriDeal
   class FEMOperator : public FieldOperator<dim>
   {
   public:
-    /** Throws UserError for a body that it cannot compute, with its coupling or without. */
-    static void require(const BodyParameters<dim> &body, const bool coupled);
-
     /**
      * With the cracks of time @p start, whatever the coupling has had before. Collective. Throws
      * UserError for material values that are not positive and for nodes that `removed` isolates.

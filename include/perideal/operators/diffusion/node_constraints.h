@@ -32,9 +32,6 @@ namespace PeriDeal
       slave
     };
 
-    /** Throws UserError for conditions that slaves cannot have. Not collective. */
-    static void require(const BodyParameters<dim> &body);
-
     /** Throws UserError for treatments that need a box. Collective. */
     NodeConstraints(const DiffusionBonds<dim> &bonds, const BodyParameters<dim> &body);
 
