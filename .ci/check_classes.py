@@ -36,7 +36,6 @@ WIDER = {
     "include/perideal/operators/solid/solid_operator.h": {"SolidOperator": (45, 14, 9)},
     "include/perideal/operators/solid/state_operator.h": {"StateOperator": (44, 6, 0)},
     "include/perideal/operators/solid/stretch_screen.h": {"StretchScreen": (18, 19, 0)},
-    "include/perideal/operators/solid/zone_breaking.h": {"ZoneBreaking": (26, 12, 0)},
     "include/perideal/problems/diffusion_problem.h": {"DiffusionProblem": (38, 10, 0)},
     "include/perideal/problems/solid_problem.h": {"SolidProblem": (44, 15, 0)},
     "include/perideal/scene/material.h": {"Material": (15, 13, 0)},

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dimensions.h"
 #include "elastic_test_tools.h"
@@ -209,6 +210,13 @@ TEST_IN_DIMENSIONS(BrokenLattice, bounds_of_a_uniform_strain_are_sharp, 2, 3)
   u *= 0.0499 / largest;
   EXPECT_TRUE(screen.suspects(u.begin(), 0.).empty());
   EXPECT_EQ(screen.suspects(u.begin(), -0.001).size(), body.nodes->n_owned());
+  // Of a criterion that knows no stretch below which nothing breaks.
+  const std::vector<double> unknown(body.nodes->n_local(),
+                                    -std::numeric_limits<double>::infinity());
+  const StretchScreen<dim>  blind(body.states->bonds().families, unknown);
+  EXPECT_EQ(blind.suspects(u.begin(), 0.).size(), body.nodes->n_owned());
+  EXPECT_TRUE(blind.may_reach(0, u.begin(), 0.));
+  EXPECT_EQ(blind.least_critical(), unknown[0]);
 }
 
 

@@ -4,15 +4,13 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/instantiate.h>
-#include <perideal/base/point_order.h>
 #include <perideal/operators/solid/bond_breaking.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
-#include "critical_stretches.h"
+#include "crossing_sums.h"
 
 namespace PeriDeal
 {
@@ -22,18 +20,21 @@ namespace PeriDeal
   BondBreaking<dim>::BondBreaking(SolidBonds<dim>           &bonds,
                                   const SolidLoads<dim>     &loads,
                                   const BodyParameters<dim> &body)
-    : bonds(bonds)
-    , body(body)
-    , breaks(body.material.fracture_energy || body.material.critical_stretch)
-    , changes(breaks || bonds.families.cracks().history().changes_ever())
+    : BondDamage<dim>(bonds.families,
+                      body,
+                      crossing_energies(
+                        bonds.families,
+                        [&laws = bonds.laws](const unsigned int i) { return laws[i]; },
+                        bonds.laws.volumetric))
+    , bonds(bonds)
+    , changes(criterion || bonds.families.cracks().history().changes_ever())
   {
     if (changes)
       bonds.rows.body.state.resize(bonds.rows.body.size());
-    if (!breaks)
+    if (!criterion)
       return;
-    find_critical_stretches();
     if (bonds.sums.has_lattice())
-      screen = std::make_unique<StretchScreen<dim>>(bonds.families, critical.least_at_nodes());
+      screen = std::make_unique<StretchScreen<dim>>(bonds.families, criterion->least_stretches());
     if (bonds.kinematics.is_full())
       watch_limits();
     loaded_side = loads.sides_nearby(bonds.families);
@@ -43,12 +44,12 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::watch_limits()
   {
-    std::vector<double> limits(bonds.families.nodes().n_owned());
+    const std::vector<double> &least = criterion->least_stretches();
+    std::vector<double> limits(least.begin(), least.begin() + bonds.families.nodes().n_owned());
     for (unsigned int i = 0; i < limits.size(); ++i)
       {
-        limits[i] = critical.of_nodes()[i];
         bonds.rows.for_each_stored(i, [&](const auto &bond) {
-          limits[i] = std::min(limits[i], critical.of_bond(i, bond.neighbor));
+          limits[i] = std::min(limits[i], least[bond.neighbor]);
         });
         limits[i] *= 1. - 1e-9; // what is found by other operations differs by round-off
       }
@@ -57,45 +58,46 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondBreaking<dim>::find_critical_stretches()
-  {
-    critical.set(bonds.families,
-                 body.material,
-                 critical_stretches_of_families(
-                   bonds.families,
-                   body,
-                   [&](const unsigned int i) -> const StateLaw & { return bonds.laws[i]; },
-                   bonds.laws.volumetric));
-  }
-
-
-  template <int dim>
   std::pair<double, double> BondBreaking<dim>::energies_of_first() const
   {
     const CrossingSums sums   = crossing_sums(bonds.families);
     const StateLaw    &law    = bonds.laws[0];
-    const double       square = critical.of_nodes()[0] * critical.of_nodes()[0];
+    const double       square = criterion->of_nodes()[0] * criterion->of_nodes()[0];
     const double       shared =
       bonds.laws.volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.;
     const double ball =
-      crossing_of_ball<dim>(body.peridynamics, bonds.families.weights().horizon());
+      crossing_of_ball<dim>(this->body.peridynamics, bonds.families.weights().horizon());
     return {square * (law.extension * sums.bonds + shared),
             square * (law.extension * ball + shared)};
   }
 
 
   template <int dim>
-  std::pair<double, double> BondBreaking<dim>::stretch_and_limit(const double         *u,
-                                                                 const unsigned int    i,
-                                                                 const SolidBond<dim> &bond) const
+  BondMeasure BondBreaking<dim>::measure(const double         *u,
+                                         const unsigned int    i,
+                                         const SolidBond<dim> &bond) const
   {
-    // W x e and W x^2; the same digits at both ends of a bond.
+    // The same digits at both ends of a bond.
     const BondKinematics<dim> &kinematics = bonds.kinematics;
     const Tensor<1, dim>       xi         = bonds.ends.vector(i, bond.neighbor);
-    const double               all = kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
-                                                            bond.moment * xi;
-    return {kinematics.extension_moment(u, i, bond),
-            all * critical.of_bond(i, bonds.ends.origin(bond.neighbor))};
+    return criterion->measure(i,
+                              bonds.ends.origin(bond.neighbor),
+                              kinematics.extension_moment(u, i, bond),
+                              kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
+                                                     bond.moment * xi);
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::judge(const double *u, const unsigned int i, const SolidBond<dim> &bond)
+  {
+    const unsigned int j = bond.neighbor;
+    if (const BondMeasure found = measure(u, i, bond); found.exceeds())
+      overstretched.push_back({bond.number,
+                               i,
+                               bonds.ends.is_fictitious(j) ? i : j,
+                               bonds.ends.n_ends(i, j),
+                               found.over_limit()});
   }
 
 
@@ -106,10 +108,8 @@ namespace PeriDeal
     losing.clear();
     const auto look_at_row = [&](const unsigned int i) {
       rows.for_each_stored(i, [&](const auto &bond) {
-        if (!rows.is_whole(bond.number))
-          return;
-        if (const auto [found, limit] = stretch_and_limit(u, i, bond); found > limit)
-          overstretched.emplace_back(bond.number, found / limit);
+        if (rows.is_whole(bond.number))
+          judge(u, i, bond);
       });
     };
     const unsigned char *const exceeds = bonds.forces.exceeding(u);
@@ -124,8 +124,7 @@ namespace PeriDeal
             bool any = false;
             if (screen->may_reach(i, u, least_strain))
               rows.for_each_in_body(i, [&](const auto &bond) {
-                const auto [found, limit] = stretch_and_limit(u, i, bond);
-                any                       = any || found > limit;
+                any = any || measure(u, i, bond).exceeds();
               });
             if (!any)
               continue;
@@ -146,40 +145,16 @@ namespace PeriDeal
     bonds.ends.find(u);
     for (const unsigned int i : bonds.rows.beyond.nodes)
       bonds.rows.for_each_beyond(i, [&](const auto &bond) {
-        if (!bonds.ends.may_break(bond.neighbor))
-          return;
-        if (const auto [found, limit] = stretch_and_limit(u, i, bond); found > limit)
-          overstretched.emplace_back(bond.number, found / limit);
+        if (bonds.ends.may_break(bond.neighbor))
+          judge(u, i, bond);
       });
-  }
-
-
-  template <int dim>
-  void BondBreaking<dim>::find_overstretched(const Vector &u, const double share)
-  {
-    overstretched.clear();
-    u.update_ghost_values();
-    find_inside(u.begin());
-    find_beyond(u.begin());
-    u.set_ghost_state(false);
-    if (share <= 0.)
-      return;
-    double most = 0.;
-    for (const auto &[number, ratio] : overstretched)
-      most = std::max(most, ratio);
-    const double at_least =
-      share * Utilities::MPI::max(most, bonds.families.nodes().communicator());
-    overstretched.erase(std::remove_if(overstretched.begin(),
-                                       overstretched.end(),
-                                       [&](const auto &bond) { return bond.second < at_least; }),
-                        overstretched.end());
   }
 
 
   template <int dim>
   double BondBreaking<dim>::stretch_over_critical(const Vector &u)
   {
-    if (!breaks)
+    if (!criterion)
       return 0.;
     Assert(!screen, ExcMessage("All bonds are to be stored."));
     double most = 0.;
@@ -189,75 +164,11 @@ namespace PeriDeal
       bonds.rows.for_each(i, [&](const auto &bond) {
         if (!bonds.rows.is_whole(bond.number) || !bonds.ends.may_break(bond.neighbor))
           return;
-        if (const auto [found, limit] = stretch_and_limit(u.begin(), i, bond); found > most * limit)
-          most = found / limit;
+        if (const BondMeasure found = measure(u.begin(), i, bond); found.exceeds(most))
+          most = found.over_limit();
       });
     u.set_ghost_state(false);
     return Utilities::MPI::max(most, bonds.families.nodes().communicator());
-  }
-
-
-  template <int dim>
-  void BondBreaking<dim>::keep_places()
-  {
-    BreakPlaces &places = so_far.places;
-    if (places.elsewhere)
-      return;
-    const bool        is_first = places.first.empty();
-    const Nodes<dim> &nodes    = bonds.families.nodes();
-    const auto       &list     = body.boundary_conditions.traction;
-    // Ends of bonds beside each side, and of those elsewhere.
-    std::vector<double>                        n_ends(list.size() + 1, 0.), all(n_ends);
-    std::vector<std::pair<double, Point<dim>>> broken; // stretch over the critical one, middle
-    const auto                                 add =
-      [&](const unsigned int i, const unsigned int j, const double n, const double ratio) {
-        const unsigned int side = std::min(loaded_side[i], loaded_side[j]);
-        n_ends[side == numbers::invalid_unsigned_int ? list.size() : side] += n;
-        if (is_first)
-          broken.emplace_back(ratio,
-                              nodes.position(i) + 0.5 * (nodes.position(j) - nodes.position(i)));
-      };
-    for (const auto &[number, ratio] : overstretched)
-      {
-        const unsigned int i = bonds.rows.node_of(number), j = bonds.rows.neighbor(number);
-        add(i, bonds.ends.is_fictitious(j) ? i : j, bonds.ends.n_ends(i, j), ratio);
-      }
-    const MPI_Comm communicator = nodes.communicator();
-    Utilities::MPI::sum(n_ends, communicator, all);
-    places.elsewhere = all.back() > 0.;
-    for (unsigned int side = 0; side < list.size() && !places.elsewhere; ++side)
-      if (all[side] > 0.)
-        places.beside_loads[list[side].name] += static_cast<unsigned long long>(0.5 * all[side]);
-    if (!is_first)
-      return;
-    // Of bonds that are stretched alike, but for round-off, the first in space.
-    double most = 0.;
-    for (const auto &[ratio, middle] : broken)
-      most = std::max(most, ratio);
-    most = (1. - 1e-6) * Utilities::MPI::max(most, communicator);
-    std::vector<Point<dim>> first;
-    for (const auto &[ratio, middle] : broken)
-      if (ratio >= most && (first.empty() || comes_first(middle, first[0])))
-        first.assign(1, middle);
-    Point<dim> found;
-    bool       any = false;
-    for (const std::vector<Point<dim>> &of_one : Utilities::MPI::all_gather(communicator, first))
-      if (!of_one.empty() && (!any || comes_first(of_one[0], found)))
-        {
-          found = of_one[0];
-          any   = true;
-        }
-    places.first.assign(found.begin_raw(), found.end_raw());
-  }
-
-
-  template <int dim>
-  void BondBreaking<dim>::find_losing()
-  {
-    for (const auto &[number, ratio] : overstretched)
-      losing.push_back(bonds.rows.node_of(number));
-    std::sort(losing.begin(), losing.end());
-    losing.erase(std::unique(losing.begin(), losing.end()), losing.end());
   }
 
 
@@ -292,42 +203,39 @@ namespace PeriDeal
 
 
   template <int dim>
-  unsigned long long BondBreaking<dim>::break_overstretched(const double t)
-  {
-    unsigned long long n_ends = 0;
-    for (const auto &[number, ratio] : overstretched)
-      {
-        n_ends += bonds.ends.n_ends(bonds.rows.node_of(number), bonds.rows.neighbor(number));
-        bonds.rows.mark(number, BondState::broken, t);
-      }
-    for (const unsigned int i : losing)
-      break_dependent(i, t);
-    return n_ends;
-  }
-
-
-  template <int dim>
   std::optional<ChangeSet<dim>> BondBreaking<dim>::break_bonds(
     const Vector                  &u,
     const double                   t,
     const double                   share,
     const std::function<double()> &energy)
   {
-    if (!breaks)
+    if (!criterion)
       return {};
-    find_overstretched(u, share);
-    const MPI_Comm           all     = bonds.families.nodes().communicator();
-    const unsigned long long n_found = overstretched.size();
-    if (Utilities::MPI::sum(n_found, all) == 0)
+    overstretched.clear();
+    u.update_ghost_values();
+    find_inside(u.begin());
+    find_beyond(u.begin());
+    u.set_ghost_state(false);
+    if (!this->select(share))
       return {};
-    keep_places();
-    find_losing();
+    for (const auto &bond : overstretched)
+      losing.push_back(bond.node);
+    std::sort(losing.begin(), losing.end());
+    losing.erase(std::unique(losing.begin(), losing.end()), losing.end());
     const double   before = energy();
     ChangeSet<dim> change;
-    change.since  = t;
-    change.damage = true;
-    change.nodes  = losing;
-    so_far.n_broken += Utilities::MPI::sum(break_overstretched(t), all) / 2;
+    change.since              = t;
+    change.damage             = true;
+    change.nodes              = losing;
+    unsigned long long n_ends = 0;
+    for (const auto &bond : overstretched)
+      {
+        n_ends += bond.n_ends;
+        bonds.rows.mark(bond.number, BondState::broken, t);
+      }
+    for (const unsigned int i : losing)
+      break_dependent(i, t);
+    so_far.n_broken += Utilities::MPI::sum(n_ends, bonds.families.nodes().communicator()) / 2;
     so_far.released += before - energy();
     return change;
   }
@@ -358,7 +266,7 @@ namespace PeriDeal
   {
     if (!changes)
       return;
-    if (breaks)
+    if (criterion)
       so_far.exchange(archive);
     const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
     if (!archive.loads())
@@ -381,14 +289,8 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::tell_damage()
   {
-    if (!bonds.law.any() || !bonds.law->knows_damage())
-      return;
-    Vector                    of_nodes(bonds.families.nodes().partitioner());
-    const std::vector<double> owned = damage();
-    std::copy(owned.begin(), owned.end(), of_nodes.begin());
-    of_nodes.update_ghost_values();
-    bonds.forces.damage.assign(of_nodes.begin(),
-                               of_nodes.begin() + bonds.families.nodes().n_local());
+    if (bonds.law.any() && bonds.law->knows_damage())
+      bonds.forces.damage = this->damage_with_ghosts();
   }
 
 

@@ -4,16 +4,17 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/instantiate.h>
+#include <perideal/base/place_text.h>
 #include <perideal/base/point_order.h>
+#include <perideal/base/types.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/solid/bond_strengths.h>
+#include <perideal/operators/solid/weibull_field.h>
 
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
-
-#include "stretch_fault.h"
 
 namespace PeriDeal
 {
@@ -23,6 +24,14 @@ namespace PeriDeal
   {
     /** Round-off of formulas. */
     constexpr double weaker = 1. - 1e-9;
+
+
+    template <int dim>
+    std::string fault_at(const bool of_energy, const Point<dim> &p)
+    {
+      return std::string("'") + (of_energy ? "Fracture energy" : "Critical stretch") +
+             "' in section 'Material' is not positive at " + place_text(p) + ".";
+    }
 
 
     /** The least value at places between two points, and where. */
@@ -79,18 +88,42 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondStrengths<dim>::set(const Families<dim> &families,
-                               const Material      &material,
-                               std::vector<double>  of_nodes)
+  BondStrengths<dim>::BondStrengths(const BreakableBonds<dim> &bonds)
+    : of_energy(!bonds.material.critical_stretch)
   {
-    nodes = std::move(of_nodes);
-    if (!material.critical_stretch && !material.fracture_energy)
-      return; // nothing breaks
-    const bool              of_energy = !material.critical_stretch;
-    const MaterialProperty &strength  = of_energy ? *material.fracture_energy :
-                                                    *material.critical_stretch;
-    if (strength.is_constant())
-      return;
+    const Nodes<dim>       &places   = bonds.families.nodes();
+    const Material         &material = bonds.material;
+    const MaterialProperty &strength = of_energy ? *material.fracture_energy :
+                                                   *material.critical_stretch;
+    std::string             message;
+    Vector                  stretches(places.partitioner());
+    for (unsigned int i = 0; i < places.n_owned(); ++i)
+      {
+        const Point<dim> &p     = places.position(i);
+        const double      value = strength.value(p);
+        double           &s     = stretches.local_element(i);
+        s                       = of_energy ? std::sqrt(value / bonds.crossing_energy(i)) : value;
+        if (message.empty() && !(s > 0.))
+          message = fault_at(of_energy, p);
+      }
+    throw_on_all_if_any(places.communicator(), message);
+    if (material.scatter)
+      {
+        const WeibullField<dim> field(places, material.scatter->modulus, material.scatter->seed);
+        for (unsigned int i = 0; i < places.n_owned(); ++i)
+          stretches.local_element(i) *= field.factor(places.position(i));
+      }
+    stretches.update_ghost_values();
+    nodes.assign(stretches.begin(), stretches.begin() + places.n_local());
+    if (!strength.is_constant())
+      find_weak(bonds.families, strength);
+  }
+
+
+  template <int dim>
+  void BondStrengths<dim>::find_weak(const Families<dim>    &families,
+                                     const MaterialProperty &strength)
+  {
     constexpr unsigned int                      n_places = 32;
     const Nodes<dim>                           &places   = families.nodes();
     const std::vector<bool>                     beside   = beside_weaker(families, strength);
@@ -122,7 +155,7 @@ namespace PeriDeal
               continue;
             if (!(value > 0.))
               {
-                message = message.empty() ? stretch_fault(!of_energy, found.second) : message;
+                message = message.empty() ? fault_at(of_energy, found.second) : message;
                 continue;
               }
             const auto of_weakest = [&](const double at_end) {

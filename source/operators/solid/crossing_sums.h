@@ -6,10 +6,12 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <perideal/bonds/families.h>
+#include <perideal/laws/elasticity.h>
 #include <perideal/laws/kernel.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -107,5 +109,25 @@ namespace PeriDeal
           }
       }
     return sums;
+  }
+
+  /**
+   * BreakableBonds::crossing_energy of state-based families.
+   * @param law_of the StateLaw of an owned node @param volumetric there are dilatations
+   */
+  template <int dim, typename LawOf>
+  std::function<double(unsigned int)> crossing_energies(const Families<dim> &bonds,
+                                                        const LawOf         &law_of,
+                                                        const bool           volumetric)
+  {
+    const bool         on_lattice = bonds.nodes().lattice().has_value();
+    const CrossingSums of_lattice = on_lattice ? crossing_sums(bonds) : CrossingSums();
+    std::vector<typename Families<dim>::Member> family;
+    return [=, &bonds](const unsigned int i) mutable {
+      const StateLaw     law  = law_of(i);
+      const CrossingSums sums = on_lattice ? of_lattice : own_crossing_sums(bonds, i, family);
+      return law.extension * sums.bonds +
+             (volumetric ? law.volumetric * law.dilatation * sums.dilatations : 0.);
+    };
   }
 } // namespace PeriDeal

@@ -79,17 +79,10 @@ namespace PeriDeal
 
     /** Laws that know it. Collective. */
     template <int dim>
-    void tell_damage(const ZoneBreaking<dim> &breaking, const Vector &layout, NodalLaw &law)
+    void tell_damage(const ZoneBreaking<dim> &breaking, NodalLaw &law)
     {
-      if (!law.steps->knows_damage())
-        return;
-      Vector                    of_nodes(layout);
-      const std::vector<double> owned = breaking.damage();
-      std::copy(owned.begin(), owned.end(), of_nodes.begin());
-      of_nodes.update_ghost_values();
-      law.damage.assign(of_nodes.begin(),
-                        of_nodes.begin() + of_nodes.locally_owned_size() +
-                          of_nodes.get_partitioner()->n_ghost_indices());
+      if (law.steps->knows_damage())
+        law.damage = breaking.damage_with_ghosts();
     }
   } // namespace
 
@@ -130,10 +123,12 @@ namespace PeriDeal
       }
     if (zone_bonds && lists_bonds(body))
       {
-        breaking = std::make_unique<ZoneBreaking<dim>>(zone_bonds->coupling(),
-                                                       dof_handler,
-                                                       body,
-                                                       law ? &law->nodal : nullptr);
+        Coupling<dim> &zone = zone_bonds->coupling();
+        breaking            = std::make_unique<ZoneBreaking<dim>>(
+          zone,
+          make_zone_bonds(zone, body, law ? &law->nodal : nullptr),
+          dof_handler,
+          body);
         this->initialize_vector(changes.forces);
       }
     positions.resize(nodes->locally_owned_size() + nodes->n_ghost_indices());
@@ -149,7 +144,7 @@ namespace PeriDeal
     find_conditions();
     assemble(false);
     if (breaking && law)
-      tell_damage(*breaking, Vector(nodes), law->nodal);
+      tell_damage(*breaking, law->nodal);
     this->keep_constant_loads();
     if (zone_bonds && body.coupling.exchanges() && !body.cracks.on_faces() &&
         body.elasticity.contact && this->may_part())
@@ -293,7 +288,7 @@ namespace PeriDeal
             stiffness_diagonal.local_element(dim * i + d) += own[d];
         }
     conditions->mask(stiffness_diagonal, 1.);
-    if (breaking && breaking->n_broken_pairs() > 0)
+    if (breaking && breaking->any_broken())
       return hold_loose(stiffness_diagonal);
     const double                   largest = stiffness_diagonal.linfty_norm();
     const Vector                   held = this->held_unknowns(); // 1 on the diagonal, in any units
@@ -413,10 +408,10 @@ namespace PeriDeal
       if (zone_bonds)
         zone_bonds->coupling().apply_change(change);
     });
-    if (breaking && breaking->n_broken_pairs() > 0)
+    if (breaking && breaking->any_broken())
       cells.note_parted();
     if (breaking && law)
-      tell_damage(*breaking, Vector(nodes), law->nodal);
+      tell_damage(*breaking, law->nodal);
     find_diagonal();
     this->keep_constant_loads();
   }
@@ -444,7 +439,7 @@ namespace PeriDeal
         hanging.condense(thermal_loads);
         this->keep_constant_loads();
       }
-    if (breaking->n_broken_pairs() > 0)
+    if (breaking->any_broken())
       cells.note_parted(&near);
     const auto mend_diagonal = [&]() {
       std::vector<unsigned int> touched = rows;
@@ -471,7 +466,7 @@ namespace PeriDeal
     if (!this->forgoes_diagonal)
       mend_diagonal();
     if (law)
-      tell_damage(*breaking, Vector(nodes), law->nodal);
+      tell_damage(*breaking, law->nodal);
     const double by_contact = contact->change(rows, u);
     if (law) // forces and energies that were added are those of the linear one
       return before - energy(u);
@@ -511,7 +506,7 @@ namespace PeriDeal
       return false;
     const std::vector<unsigned int> rows = zone_bonds->nodes_near(boxes);
     this->released_beside.by_joining += mend_zone(boxes, zone_bonds->reach(), rows, u, [&] {
-      breaking->join(joining);
+      zone_bonds->coupling().breakable()->join_nodes(joining);
       breaking->bonds.set_rows(rows, cells.factors);
     });
     return true;
@@ -537,10 +532,10 @@ namespace PeriDeal
                                          const double                 t)
   {
     const WithGhosts ghosts(u);
-    breaking->history.released +=
+    breaking->add_released(
       mend_zone(breaking->parted_by(pairs), 0., breaking->rows_of(pairs), u, [&] {
         breaking->take(pairs, t);
-      });
+      }));
     join_stretched(u);
   }
 
@@ -581,9 +576,9 @@ namespace PeriDeal
       return;
     assemble(false);
     if (law)
-      tell_damage(*breaking, Vector(nodes), law->nodal);
+      tell_damage(*breaking, law->nodal);
     this->keep_constant_loads();
-    if (breaking->n_broken_pairs() > 0)
+    if (breaking->any_broken())
       cells.note_parted();
   }
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "critical_stretches.h"
+#include "crossing_sums.h"
 
 namespace PeriDeal
 {
@@ -39,11 +39,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<double> FamilyBonds<dim>::critical_stretches(const BodyParameters<dim> &of_body) const
+  std::function<double(unsigned int)> FamilyBonds<dim>::crossing_energies(
+    const BodyParameters<dim> &) const
   {
-    return critical_stretches_of_families(
+    return PeriDeal::crossing_energies(
       this->families,
-      of_body,
       [this](const unsigned int i) { return law_of(i); },
       dim > 1);
   }

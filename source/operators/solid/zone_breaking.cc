@@ -7,7 +7,6 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 #include <perideal/base/place_text.h>
-#include <perideal/base/point_order.h>
 #include <perideal/operators/solid/zone_breaking.h>
 
 #include <algorithm>
@@ -62,22 +61,19 @@ namespace PeriDeal
 
 
   template <int dim>
-  ZoneBreaking<dim>::ZoneBreaking(Coupling<dim>             &coupling,
-                                  const DoFHandler<dim>     &dofs,
-                                  const BodyParameters<dim> &body,
-                                  const NodalLaw            *law)
-    : own_bonds(make_zone_bonds(coupling, body, law))
+  ZoneBreaking<dim>::ZoneBreaking(Coupling<dim>                    &coupling,
+                                  std::unique_ptr<ZoneBonds<dim>> &&of_zone,
+                                  const DoFHandler<dim>            &dofs,
+                                  const BodyParameters<dim>        &body)
+    : BondDamage<dim>(coupling.breakable()->families_of_bonds(),
+                      body,
+                      of_zone->crossing_energies(body))
+    , own_bonds(std::move(of_zone))
     , bonds(*own_bonds)
     , zone(*coupling.breakable())
     , nodes(zone.families_of_bonds().nodes())
     , share_of_zone(body.coupling.follows_stretches() ? body.coupling.zone_share : 0.)
   {
-    history.is_possible = body.material.fracture_energy || body.material.critical_stretch;
-    critical.set(zone.families_of_bonds(),
-                 body.material,
-                 history.is_possible ?
-                   bonds.critical_stretches(body) :
-                   std::vector<double>(nodes.n_local(), std::numeric_limits<double>::infinity()));
     if (share_of_zone > 0.)
       find_cells(dofs);
   }
@@ -95,7 +91,7 @@ namespace PeriDeal
 
   template <int dim>
   template <typename Take>
-  void ZoneBreaking<dim>::visit_stretches(const Vector &u, const Take &take) const
+  void ZoneBreaking<dim>::visit_measures(const Vector &u, const Take &take) const
   {
     for (const unsigned int i : bonds.nodes())
       bonds.for_each(i, [&](const auto &bond, const Tensor<1, dim> &xi) {
@@ -108,7 +104,7 @@ namespace PeriDeal
         double stretch = change / xi.norm_square();
         if (!thermal.empty())
           stretch -= 0.5 * (thermal[i] + thermal[j]);
-        take(i, j, stretch, critical.of_bond(i, j));
+        take(i, j, criterion->measure(i, j, stretch, 1.));
       });
   }
 
@@ -116,27 +112,22 @@ namespace PeriDeal
   template <int dim>
   std::vector<NodePair> ZoneBreaking<dim>::find_overstretched(const Vector &u, const double share)
   {
-    const auto                              &layout = *nodes.partitioner();
-    std::vector<std::pair<NodePair, double>> found; // stretch over the critical one
-    double                                   most = 0.;
-    visit_stretches(u, [&](const auto i, const auto j, const double stretch, const double limit) {
-      if (!(stretch > limit) || !zone.may_break(i, j))
+    if (!criterion)
+      return {};
+    const auto &layout = *nodes.partitioner();
+    overstretched.clear();
+    visit_measures(u, [&](const auto i, const auto j, const BondMeasure &found) {
+      if (!found.exceeds() || !zone.may_break(i, j))
         return;
-      NodePair pair{layout.local_to_global(i), layout.local_to_global(j)};
-      std::sort(pair.begin(), pair.end());
-      found.emplace_back(pair, stretch / limit);
-      most = std::max(most, stretch / limit);
+      const bool ascends = layout.local_to_global(i) < layout.local_to_global(j);
+      overstretched.push_back({0, ascends ? i : j, ascends ? j : i, 2, found.over_limit()});
     });
-    const MPI_Comm communicator = nodes.communicator();
-    most                        = Utilities::MPI::max(most, communicator);
-    if (most == 0.)
+    if (!this->select(share))
       return {};
     std::vector<NodePair> own;
-    for (const auto &[pair, ratio] : found)
-      if (ratio >= share * most)
-        own.push_back(pair);
-    keep_first_place(found);
-    std::vector<NodePair> all = gather(own, communicator);
+    for (const auto &bond : overstretched)
+      own.push_back({layout.local_to_global(bond.node), layout.local_to_global(bond.neighbor)});
+    std::vector<NodePair> all = gather(own, nodes.communicator());
     std::sort(all.begin(), all.end());
     return all;
   }
@@ -145,11 +136,13 @@ namespace PeriDeal
   template <int dim>
   double ZoneBreaking<dim>::stretch_over_critical(const Vector &u)
   {
+    if (!criterion)
+      return 0.;
     double most = 0.;
     u.update_ghost_values();
-    visit_stretches(u, [&](const auto i, const auto j, const double stretch, const double limit) {
-      if (stretch > most * limit && zone.may_break(i, j))
-        most = stretch / limit;
+    visit_measures(u, [&](const auto i, const auto j, const BondMeasure &found) {
+      if (found.exceeds(most) && zone.may_break(i, j))
+        most = found.over_limit();
     });
     if (share_of_zone > 0.)
       cells.visit_stretched(u, [&](const std::array<unsigned int, n_corners> &corners) {
@@ -158,35 +151,6 @@ namespace PeriDeal
       });
     u.set_ghost_state(false);
     return Utilities::MPI::max(most, nodes.communicator());
-  }
-
-
-  template <int dim>
-  void ZoneBreaking<dim>::keep_first_place(const std::vector<std::pair<NodePair, double>> &found)
-  {
-    if (!history.places.first.empty())
-      return;
-    // Of bonds that are stretched alike, but for round-off, the first in space.
-    double most = 0.;
-    for (const auto &[pair, ratio] : found)
-      most = std::max(most, ratio);
-    most = (1. - 1e-6) * Utilities::MPI::max(most, nodes.communicator());
-    std::vector<Point<dim>> first;
-    for (const auto &[pair, ratio] : found)
-      if (ratio >= most)
-        {
-          const Point<dim> &a     = nodes.position(*known(pair[0])),
-                           &b     = nodes.position(*known(pair[1]));
-          const Point<dim> middle = a + 0.5 * (b - a);
-          if (first.empty() || comes_first(middle, first[0]))
-            first.assign(1, middle);
-        }
-    std::vector<Point<dim>> all = gather(first, nodes.communicator());
-    for (const Point<dim> &p : all)
-      if (comes_first(p, all[0]))
-        all[0] = p;
-    history.places.first.assign(all[0].begin_raw(), all[0].end_raw());
-    history.places.elsewhere = true; // loads act on elements
   }
 
 
@@ -229,7 +193,7 @@ namespace PeriDeal
     for (const NodePair &pair : pairs)
       {
         broken.push_back({pair, t});
-        ++history.n_broken;
+        ++so_far.n_broken;
         const auto a = known(pair[0]), b = known(pair[1]);
         if (!a || !b)
           continue;
@@ -243,13 +207,26 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::pair<double, double> ZoneBreaking<dim>::limit_of(
+    const std::array<unsigned int, n_corners> &corners) const
+  {
+    double limit = std::numeric_limits<double>::max(), warm = 0.;
+    for (const unsigned int i : corners)
+      {
+        limit = std::min(limit, criterion->least_stretches()[i]);
+        warm += thermal.empty() ? 0. : thermal[i] / n_corners;
+      }
+    return {limit, warm};
+  }
+
+
+  template <int dim>
   double ZoneBreaking<dim>::largest_strain(const std::array<unsigned int, n_corners> &corners,
                                            const Vector                              &u,
                                            const double at_least) const
   {
     const Tensor<1, dim> size = nodes.position(corners[n_corners - 1]) - nodes.position(corners[0]);
     Tensor<2, dim>       gradient;
-    double               limit = std::numeric_limits<double>::max(), warm = 0.;
     for (unsigned int v = 0; v < n_corners; ++v)
       for (unsigned int e = 0; e < dim; ++e)
         {
@@ -257,11 +234,7 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             gradient[d][e] += slope * u.local_element(dim * corners[v] + d);
         }
-    for (const unsigned int i : corners)
-      {
-        limit = std::min(limit, critical.least_at_nodes()[i]);
-        warm += thermal.empty() ? 0. : thermal[i] / n_corners;
-      }
+    const auto [limit, warm]             = limit_of(corners);
     const SymmetricTensor<2, dim> strain = symmetrize(gradient);
     if (strain.norm() * (1. + 1e-12) - warm < at_least * limit)
       return 0.;
@@ -274,27 +247,20 @@ namespace PeriDeal
   {
     if (share_of_zone == 0.)
       return {};
-    const auto centre = [&](const std::array<unsigned int, n_corners> &corners) {
-      return nodes.position(corners[0]) +
-             0.5 * (nodes.position(corners[n_corners - 1]) - nodes.position(corners[0]));
-    };
     std::vector<Point<dim>> own;
     const auto              is_lit = [&](const std::array<unsigned int, n_corners> &corners) {
       if (!(largest_strain(corners, u, share_of_zone) >= share_of_zone))
         return false;
-      own.push_back(centre(corners));
+      const Point<dim> &first = nodes.position(corners[0]);
+      own.push_back(first + 0.5 * (nodes.position(corners[n_corners - 1]) - first));
       return true;
     };
     cells.visit_stretched(u, is_lit);
-    std::vector<Point<dim>> places = gather(own, nodes.communicator());
-    std::vector<Point<dim>> ends;
     for (; n_followed < broken.size(); ++n_followed)
       for (const auto node : broken[n_followed].pair)
         if (nodes.partitioner()->in_local_range(node))
-          ends.push_back(nodes.position(nodes.partitioner()->global_to_local(node)));
-    for (const Point<dim> &p : gather(ends, nodes.communicator()))
-      places.push_back(p);
-    return places;
+          own.push_back(nodes.position(nodes.partitioner()->global_to_local(node)));
+    return gather(own, nodes.communicator());
   }
 
 
@@ -303,6 +269,8 @@ namespace PeriDeal
     const Vector          &u,
     const DoFHandler<dim> &dofs) const
   {
+    if (!criterion)
+      return {};
     unsigned long long                         n = 0;
     std::vector<std::pair<double, Point<dim>>> worst;
     u.update_ghost_values();
@@ -340,25 +308,20 @@ namespace PeriDeal
   std::vector<typename ZoneBreaking<dim>::Joining> ZoneBreaking<dim>::joining(
     const std::vector<Point<dim>> &places) const
   {
+    constexpr double     none = -std::numeric_limits<double>::infinity();
+    std::vector<double>  largest(nodes.n_local(), none);
     std::vector<Joining> list;
-    const auto           keep_largest_weights = [&list]() {
-      std::sort(list.begin(), list.end(), [](const Joining &a, const Joining &b) {
-        return a.node != b.node ? a.node < b.node : a.weight > b.weight;
-      });
-      list.erase(std::unique(list.begin(),
-                             list.end(),
-                             [](const Joining &a, const Joining &b) { return a.node == b.node; }),
-                 list.end());
-      return list.size();
-    };
-    std::size_t most = 1 << 16; // places of a body under even strain are near to each other
     for (const Point<dim> &place : places)
       {
+        list.clear();
         zone.find_joining(place, list);
-        if (list.size() > most)
-          most = std::max(most, 2 * keep_largest_weights());
+        for (const Joining &joins : list)
+          largest[joins.node] = std::max(largest[joins.node], joins.weight);
       }
-    keep_largest_weights();
+    list.clear();
+    for (unsigned int i = 0; i < largest.size(); ++i)
+      if (largest[i] > none)
+        list.push_back({i, largest[i]});
     return list;
   }
 
@@ -414,7 +377,7 @@ namespace PeriDeal
     std::size_t &n_first = kept_zone.n_broken;
     // Pairs by the key of their first node and the place of the second one in its row, which is
     // that of all members of the family: the same on all processes.
-    history.exchange(archive);
+    so_far.exchange(archive);
     unsigned long long n_kept = n_first;
     archive.exchange("broken at first", n_kept);
     Vector now(nodes.partitioner()), at_first_zone(now);
@@ -469,7 +432,7 @@ namespace PeriDeal
     std::sort(all.begin(), all.end());
     now.update_ghost_values();
     at_first_zone.update_ghost_values();
-    const unsigned long long n_broken  = history.n_broken;
+    const unsigned long long n_broken  = so_far.n_broken;
     const auto               take_from = [&](const std::size_t first, const std::size_t last) {
       for (std::size_t k = first; k < last; ++k)
         take({{static_cast<types::global_dof_index>(all[k][2]),
@@ -489,15 +452,15 @@ namespace PeriDeal
     at_first();
     join_all(now);
     take_from(n_first, all.size());
-    history.n_broken = n_broken;
-    n_followed       = broken.size();
+    so_far.n_broken = n_broken;
+    n_followed      = broken.size();
   }
 
 
   template <int dim>
   std::size_t ZoneBreaking<dim>::memory_consumption() const
   {
-    return bonds.memory_consumption() + critical.memory_consumption() +
+    return bonds.memory_consumption() + (criterion ? criterion->memory_consumption() : 0) +
            thermal.capacity() * sizeof(double) + cells.memory_consumption() +
            broken.capacity() * sizeof(Break);
   }
@@ -598,12 +561,7 @@ namespace PeriDeal
   void ZoneBreaking<dim>::set_limits_of_cells()
   {
     cells.set_limits([&](const std::array<unsigned int, n_corners> &corners) {
-      double limit = std::numeric_limits<double>::max(), warm = 0.;
-      for (const unsigned int i : corners)
-        {
-          limit = std::min(limit, critical.least_at_nodes()[i]);
-          warm += thermal.empty() ? 0. : thermal[i] / n_corners;
-        }
+      const auto [limit, warm] = limit_of(corners);
       return share_of_zone * limit + warm;
     });
   }

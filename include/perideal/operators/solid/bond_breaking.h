@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/solid/bond_strengths.h>
+#include <perideal/operators/solid/bond_damage.h>
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/operators/solid/solid_bonds.h>
 #include <perideal/operators/solid/solid_loads.h>
@@ -19,9 +19,8 @@
 namespace PeriDeal
 {
   /**
-   * Bonds that break for good at a stretch e/x of the smallest critical value s of the materials on
-   * their way (BondStrengths). It is given, or follows from the fracture energy: what crosses a
-   * plane of the lattice, mean over the axes n, has stored, at this stretch while all else is at
+   * Bonds of peridynamics alone that break for good (DamageCriterion). What crosses a plane of the
+   * lattice, mean over the axes n, has stored, at a stretch s of all of it while all else is at
    * rest, s^2 (b B + c d D) with
    *   B = 1/q sum over half the family of omega f V xi_n x^2,
    *   D = h_n sum over the layers on one side of (1/q sum over what crosses of omega f V x^2)^2.
@@ -30,7 +29,7 @@ namespace PeriDeal
    * Which bonds are broken, and since when, stands in BondTable.
    */
   template <int dim>
-  class BondBreaking
+  class BondBreaking : public BondDamage<dim>
   {
   public:
     /** Bonds and scene have to outlive this object. Collective. Throws UserError. */
@@ -65,12 +64,6 @@ namespace PeriDeal
       return {bonds.rows.body.state.n_marks(), bonds.rows.beyond.state.n_marks()};
     }
 
-    /** Energy that what the bonds held has released beside. */
-    void add_released(const double energy)
-    {
-      so_far.released += energy;
-    }
-
     /**
      * What has broken or been cut, and since when. Collective.
      *
@@ -87,18 +80,6 @@ namespace PeriDeal
     /** As ElasticOperator::broken_since(). */
     std::vector<NodePair> broken_since(std::size_t &n_known) const;
 
-    /** What has broken so far; null: bonds do not break. */
-    const BreakHistory *history() const
-    {
-      return breaks ? &so_far : nullptr;
-    }
-
-    /** Of the owned nodes and their ghosts; empty where bonds do not break. */
-    const std::vector<double> &critical_stretches() const
-    {
-      return critical.of_nodes();
-    }
-
     /**
      * The fracture energy that the critical stretch of the first node here means on its lattice,
      * s^2 b B and the share of the dilatations, and with the B of the integral over a ball in place
@@ -106,47 +87,37 @@ namespace PeriDeal
      */
     std::pair<double, double> energies_of_first() const;
 
-    /**
-     * 1 - the volume of neighbours over unbroken bonds over that of the whole family, at the owned
-     * nodes; bonds that cracks of the scene cut count as broken, those that voids cut as none.
-     */
-    std::vector<double> damage() const;
+    /** Bonds that voids cut are none. */
+    std::vector<double> damage() const override;
 
     /** BondForces::damage, for laws that know it, is that of the bonds as they are. Collective. */
     void tell_damage();
 
     std::size_t memory_consumption() const
     {
-      return critical.memory_consumption() + loaded_side.capacity() * sizeof(unsigned int) +
+      return (criterion ? criterion->memory_consumption() : 0) +
+             loaded_side.capacity() * sizeof(unsigned int) +
              (screen ? screen->memory_consumption() : 0);
     }
 
   private:
-    void                      find_critical_stretches();
-    void                      watch_limits(); // of full kinematics
-    std::pair<double, double> stretch_and_limit(const double         *u,
-                                                const unsigned int    i,
-                                                const SolidBond<dim> &bond) const; // times W x^2
-    void                      find_inside(const double *u);
-    void                      find_beyond(const double *u);
-    void                      find_overstretched(const Vector &u, const double share);
-    void                      find_losing();
-    void                      keep_places(); // of what is overstretched
-    void                      break_dependent(const unsigned int node, const double t);
+    using BondDamage<dim>::criterion;
+    using BondDamage<dim>::so_far;
+    using BondDamage<dim>::overstretched;
+    using BondDamage<dim>::loaded_side;
 
-    /** Returns the number of ends of bonds. */
-    unsigned long long break_overstretched(const double t);
+    void        watch_limits(); // of full kinematics
+    BondMeasure measure(const double         *u,
+                        const unsigned int    i,
+                        const SolidBond<dim> &bond) const; // e times W x
+    void        judge(const double *u, const unsigned int i, const SolidBond<dim> &bond);
+    void        find_inside(const double *u);
+    void        find_beyond(const double *u);
+    void        break_dependent(const unsigned int node, const double t);
 
-    SolidBonds<dim>           &bonds;
-    const BodyParameters<dim> &body;
-    const bool                 breaks, changes; // some bond may break, or be cut by a growing crack
-    BondStrengths<dim>         critical;
-    BreakHistory               so_far;
-    std::vector<unsigned int>  loaded_side; // which in `Traction` is within a horizon of these
-    // What is to break next: numbers of bonds, and how far each is stretched over the critical
-    // stretch; and the nodes that lose them, in ascending order.
-    std::vector<std::pair<std::size_t, double>> overstretched;
-    std::vector<unsigned int>                   losing;
-    std::unique_ptr<StretchScreen<dim>>         screen; // null: all bonds are looked at
+    SolidBonds<dim>                    &bonds;
+    const bool                          changes; // some bond may break, or a growing crack cut it
+    std::vector<unsigned int>           losing;  // bonds, in ascending order
+    std::unique_ptr<StretchScreen<dim>> screen;  // null: all bonds are looked at
   };
 } // namespace PeriDeal

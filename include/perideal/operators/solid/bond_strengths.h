@@ -3,8 +3,7 @@
 
 #pragma once
 
-#include <perideal/bonds/families.h>
-#include <perideal/scene/material.h>
+#include <perideal/operators/solid/damage_criterion.h>
 
 #include <algorithm>
 #include <vector>
@@ -12,23 +11,30 @@
 namespace PeriDeal
 {
   /**
-   * Critical stretches of bonds: the smaller one of both ends, or, where the material on the
-   * straight way between them is weaker than at both, that of a bond whose ends have the fracture
-   * energy (critical stretch) of the weakest place: the smaller s_i sqrt(G_min/G_i) of both ends.
+   * Critical stretches of bonds: given, or those at which what crosses a plane has stored the
+   * fracture energy, times what scatters (WeibullField). Of a bond the smaller one of both ends,
+   * or, where the material on the straight way between them is weaker than at both, that of a bond
+   * whose ends have the fracture energy (critical stretch) of the weakest place: the smaller
+   * s_i sqrt(G_min/G_i) of both ends.
    * So a layer between two rows of nodes takes its own energy to break, however thin it is.
    *
    * Ways are looked at where the material is seen to be weaker between a node of the family and the
    * next ones, in 32 places each.
    */
   template <int dim>
-  class BondStrengths
+  class BondStrengths : public DamageCriterion<dim>
   {
   public:
-    /**
-     * @param of_nodes critical stretches of owned nodes and ghosts
-     * Throws UserError for those on the way that are not above 0. Collective.
-     */
-    void set(const Families<dim> &families, const Material &material, std::vector<double> of_nodes);
+    /** Throws UserError for those at nodes and on the way that are not above 0. Collective. */
+    explicit BondStrengths(const BreakableBonds<dim> &bonds);
+
+    BondMeasure measure(const unsigned int i,
+                        const unsigned int j,
+                        const double       extension,
+                        const double       length) const override
+    {
+      return {extension, length * of_bond(i, j)};
+    }
 
     /** An owned node and a neighbour, or the origin of its image, in either order. */
     double of_bond(const unsigned int i, const unsigned int j) const
@@ -45,19 +51,18 @@ namespace PeriDeal
       return at_ends;
     }
 
-    /** Of owned nodes and ghosts, bonds apart; empty before set(). */
-    const std::vector<double> &of_nodes() const
+    const std::vector<double> &of_nodes() const override
     {
       return nodes;
     }
 
     /** The least of a node's bonds to weaker or equal ones and of itself. */
-    const std::vector<double> &least_at_nodes() const
+    const std::vector<double> &least_stretches() const override
     {
       return begins.empty() ? nodes : least;
     }
 
-    std::size_t memory_consumption() const
+    std::size_t memory_consumption() const override
     {
       return (nodes.capacity() + least.capacity()) * sizeof(double) +
              begins.capacity() * sizeof(std::size_t) + weak.capacity() * sizeof(Weak);
@@ -70,10 +75,13 @@ namespace PeriDeal
       double       stretch;
     };
 
+    void find_weak(const Families<dim> &families, const MaterialProperty &strength);
+
     /** Beside these local nodes the material is weaker than at them. */
     std::vector<bool> beside_weaker(const Families<dim>    &families,
                                     const MaterialProperty &strength) const;
 
+    const bool               of_energy; // from the fracture energy; else given
     std::vector<double>      nodes, least;
     std::vector<std::size_t> begins; // by owned node; empty: no way is weaker than its ends
     std::vector<Weak>        weak;

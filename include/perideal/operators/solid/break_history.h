@@ -46,7 +46,6 @@ namespace PeriDeal
     double             released = 0.; // strain energy
     unsigned long long n_broken = 0;  // bonds
     BreakPlaces        places;
-    bool               is_possible = true; // that bonds break
 
     /** Collective. */
     void exchange(Archive &archive);

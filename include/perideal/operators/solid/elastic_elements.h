@@ -73,7 +73,7 @@ namespace PeriDeal
 
     const BreakHistory *break_history() const override
     {
-      return breaking && breaking->history.is_possible ? &breaking->history : nullptr;
+      return breaking ? breaking->history() : nullptr;
     }
 
     bool nonlinear() const override

@@ -27,9 +27,10 @@ namespace PeriDeal
     /** Both have to outlive this object. */
     FamilyBonds(Coupling<dim> &coupling, const BodyParameters<dim> &body, const NodalLaw *law);
 
-    std::vector<double> critical_stretches(const BodyParameters<dim> &body) const override;
-    void                set_rows(const std::vector<unsigned int> &of_nodes,
-                                 const CrackSideFactors          &factors) override;
+    std::function<double(unsigned int)> crossing_energies(
+      const BodyParameters<dim> &of_body) const override;
+    void set_rows(const std::vector<unsigned int> &of_nodes,
+                  const CrackSideFactors          &factors) override;
 
     /** Owned nodes within the reach of a family. */
     std::vector<unsigned int> rows_at(const std::vector<unsigned int> &ends) const override;

@@ -27,9 +27,10 @@ namespace PeriDeal
     /** Both have to outlive this object. */
     PairBonds(const Coupling<dim> &coupling, const LatticeBonds<dim> &bonds, const NodalLaw *law);
 
-    std::vector<double> critical_stretches(const BodyParameters<dim> &body) const override;
-    void                set_rows(const std::vector<unsigned int> &of_nodes,
-                                 const CrackSideFactors          &factors) override;
+    std::function<double(unsigned int)> crossing_energies(
+      const BodyParameters<dim> &of_body) const override;
+    void set_rows(const std::vector<unsigned int> &of_nodes,
+                  const CrackSideFactors          &factors) override;
 
     /** Owned ones of the ends themselves. */
     std::vector<unsigned int> rows_at(const std::vector<unsigned int> &ends) const override;

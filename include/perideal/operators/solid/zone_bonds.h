@@ -9,6 +9,7 @@
 #include <perideal/operators/solid/nodal_law.h>
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -48,11 +49,9 @@ namespace PeriDeal
 
     virtual ~ZoneBonds() = default;
 
-    /**
-     * The critical stretches of all nodes known here. Collective. Throws UserError for those not
-     * above 0.
-     */
-    virtual std::vector<double> critical_stretches(const BodyParameters<dim> &body) const = 0;
+    /** BreakableBonds::crossing_energy. */
+    virtual std::function<double(unsigned int)> crossing_energies(
+      const BodyParameters<dim> &body) const = 0;
 
     /**
      * Take the rows of some owned nodes anew, each once, as the coupling has them now, W times the
@@ -63,7 +62,7 @@ namespace PeriDeal
 
     /**
      * The owned nodes whose forces change with bonds, ascending. @p ends are those of the bonds,
-     * others included.
+     * others included, ascending and each once.
      */
     virtual std::vector<unsigned int> rows_at(const std::vector<unsigned int> &ends) const = 0;
 

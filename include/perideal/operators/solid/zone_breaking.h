@@ -6,11 +6,10 @@
 #include <perideal/bonds/bond_break.h>
 #include <perideal/operators/coupling/breakable_zone.h>
 #include <perideal/operators/coupling/coupling.h>
-#include <perideal/operators/solid/bond_strengths.h>
+#include <perideal/operators/solid/bond_damage.h>
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/operators/solid/stretched_cells.h>
 #include <perideal/operators/solid/zone_bonds.h>
-#include <perideal/scene/body_parameters.h>
 
 #include <array>
 #include <memory>
@@ -23,10 +22,9 @@ namespace PeriDeal
   /**
    * Bonds of a coupled solid that break for good, and a zone that follows (`Zone = follow`).
    *
-   * A bond breaks at a stretch (xi . (u_j - u_i))/x^2 - alpha dT, dT the mean of its ends, beyond
-   * the smallest critical stretch on the way (BondStrengths), where the zone lets it
-   * (BreakableZone::may_break()). In an exchange a cell between whose vertices a bond has broken
-   * keeps nothing (BreakableZone::parts()).
+   * A bond breaks by its stretch (xi . (u_j - u_i))/x^2 - alpha dT, dT the mean of its ends
+   * (DamageCriterion), where the zone lets it (BreakableZone::may_break()). In an exchange a cell
+   * between whose vertices a bond has broken keeps nothing (BreakableZone::parts()).
    *
    * The zone grows around the centre of a cell whose largest principal strain, thermal strain taken
    * off, has reached a share of the critical stretch, and around the ends of broken bonds: in an
@@ -34,7 +32,7 @@ namespace PeriDeal
    * collective unless stated, and leave the same on all processes.
    */
   template <int dim>
-  class ZoneBreaking
+  class ZoneBreaking : public BondDamage<dim>
   {
   public:
     using Joining = typename BreakableZone<dim>::Joining;
@@ -42,14 +40,11 @@ namespace PeriDeal
     /** Throws UserError for bodies whose bonds cannot break beside elements. Not collective. */
     static void require(const BodyParameters<dim> &body);
 
-    /**
-     * All have to outlive this object. Throws UserError for critical stretches not above 0.
-     * @param law of the bonds; null: the linear solid
-     */
-    ZoneBreaking(Coupling<dim>                 &coupling,
-                 const dealii::DoFHandler<dim> &dofs,
-                 const BodyParameters<dim>     &body,
-                 const NodalLaw                *law = nullptr);
+    /** Others have to outlive this object. Throws UserError: faults of the criterion. */
+    ZoneBreaking(Coupling<dim>                    &coupling,
+                 std::unique_ptr<ZoneBonds<dim>> &&of_zone,
+                 const dealii::DoFHandler<dim>    &dofs,
+                 const BodyParameters<dim>        &body);
 
     /** Thermal strains of all nodes known here; empty: none. Not collective. */
     void set_thermal(std::vector<double> strains)
@@ -98,17 +93,7 @@ namespace PeriDeal
     /** Nodes known here that are to join around these places, ascending. Not collective. */
     std::vector<Joining> joining(const std::vector<dealii::Point<dim>> &places) const;
 
-    /** They join; rows of bonds are left. Not collective. */
-    void join(const std::vector<Joining> &list)
-    {
-      zone.join_nodes(list);
-    }
-
-    /**
-     * 1 - the volume of neighbours over unbroken bonds over that of the family, at owned nodes;
-     * what cracks of the scene cut counts as broken. Not collective.
-     */
-    std::vector<double> damage() const;
+    std::vector<double> damage() const override;
 
     /** As ElasticOperator::broken_since(). Not collective. */
     std::vector<NodePair> broken_since(std::size_t &n_known) const;
@@ -122,11 +107,6 @@ namespace PeriDeal
         if (layout.in_local_range(pair[0]))
           list.push_back({layout.global_to_local(pair[0]), layout.global_to_local(pair[1]), time});
       return list;
-    }
-
-    std::size_t n_broken_pairs() const
-    {
-      return broken.size();
     }
 
     /** The zone is as it is when the latest preconditioner is made. Not collective. */
@@ -145,9 +125,12 @@ namespace PeriDeal
 
   public:
     ZoneBonds<dim> &bonds;
-    BreakHistory    history;
 
   private:
+    using BondDamage<dim>::criterion;
+    using BondDamage<dim>::so_far;
+    using BondDamage<dim>::overstretched;
+
     static constexpr unsigned int n_corners = dealii::GeometryInfo<dim>::vertices_per_cell;
 
     struct Break
@@ -156,20 +139,21 @@ namespace PeriDeal
       double   time;
     };
 
-    /** take(i, j, stretch, critical stretch) for the whole bonds that start at owned nodes. */
+    /** take(i, j, measure) for the whole bonds that start at owned nodes. */
     template <typename Take>
-    void visit_stretches(const Vector &u, const Take &take) const;
+    void visit_measures(const Vector &u, const Take &take) const;
 
     void find_cells(const dealii::DoFHandler<dim> &dofs);
     void set_limits_of_cells();
+    /** The least stretch at which bonds of the corners may break, and the mean thermal strain. */
+    std::pair<double, double> limit_of(const std::array<unsigned int, n_corners> &corners) const;
     /**
-     * Thermal strain taken off, over the smallest critical stretch of the corners; 0 where its
-     * bound, the norm of the strain, is not @p at_least so much.
+     * Thermal strain taken off, over the limit of the corners; 0 where its bound, the norm of the
+     * strain, is not @p at_least so much.
      */
     double largest_strain(const std::array<unsigned int, n_corners> &corners,
                           const Vector                              &u,
                           const double                               at_least) const;
-    void   keep_first_place(const std::vector<std::pair<NodePair, double>> &found);
 
     /** Local number of a node, or none. */
     std::optional<unsigned int> known(const dealii::types::global_dof_index node) const;
@@ -177,7 +161,6 @@ namespace PeriDeal
     BreakableZone<dim> &zone;
     const Nodes<dim>   &nodes;
     const double        share_of_zone; // 0: the zone stays
-    BondStrengths<dim>  critical;
     std::vector<double> thermal;
     StretchedCells<dim> cells;          // whose centres have lit nothing yet
     std::vector<Break>  broken;         // in the order of breaking

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/types.h>
+#include <perideal/operators/solid/break_history.h>
+#include <perideal/operators/solid/damage_criterion.h>
+#include <perideal/scene/body_parameters.h>
+
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * What breaks of a solid's bonds, wherever they stand (BondBreaking, ZoneBreaking): those beyond
+   * a DamageCriterion with at least a share of the largest measure over its limit; where the first
+   * ones were, and what all have released.
+   */
+  template <int dim>
+  class BondDamage
+  {
+  public:
+    virtual ~BondDamage() = default;
+
+    /** What has broken so far; null: bonds do not break. */
+    const BreakHistory *history() const
+    {
+      return criterion ? &so_far : nullptr;
+    }
+
+    bool any_broken() const
+    {
+      return so_far.n_broken > 0;
+    }
+
+    /** Energy that bonds which broke, or what they held, have released. */
+    void add_released(const double energy)
+    {
+      so_far.released += energy;
+    }
+
+    /** Of the owned nodes and their ghosts; empty where bonds do not break. */
+    const std::vector<double> &critical_stretches() const
+    {
+      static const std::vector<double> none;
+      return criterion ? criterion->of_nodes() : none;
+    }
+
+    /**
+     * The volume of neighbours over broken bonds over that of the whole family, at the owned nodes;
+     * bonds that cracks of the scene cut count as broken. Not collective.
+     */
+    virtual std::vector<double> damage() const = 0;
+
+    /** Of the owned nodes and their ghosts. Collective. */
+    std::vector<double> damage_with_ghosts() const;
+
+  protected:
+    /** A bond beyond its limit, at an owned node. */
+    struct Overstretched
+    {
+      std::size_t  number; // of who asks
+      unsigned int node, neighbor;
+      unsigned int n_ends; // so many are counted here
+      double       ratio;  // of its measure to the limit
+    };
+
+    /**
+     * All have to outlive this object. Collective. Throws UserError.
+     * @param crossing_energy as in BreakableBonds
+     */
+    BondDamage(const Families<dim>                  &families,
+               const BodyParameters<dim>            &body,
+               std::function<double(unsigned int)> &&crossing_energy);
+
+    /**
+     * Leave what breaks now in BondDamage::overstretched, and keep the places. Returns whether
+     * there is any on any process. Collective.
+     */
+    bool select(const double share);
+
+    const Families<dim>                        &families;
+    const BodyParameters<dim>                  &body;
+    std::unique_ptr<const DamageCriterion<dim>> criterion; // null: nothing breaks
+    BreakHistory                                so_far;
+    std::vector<Overstretched>                  overstretched;
+    std::vector<unsigned int> loaded_side; // SolidLoads::sides_nearby(); empty: none
+
+  private:
+    void keep_places(const double most);
+  };
+} // namespace PeriDeal

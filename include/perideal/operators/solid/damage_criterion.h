@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/bonds/families.h>
+#include <perideal/scene/material.h>
+
+#include <functional>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** What a bond is measured by, and where it breaks, in the same unit. */
+  struct BondMeasure
+  {
+    double value, limit;
+
+    bool exceeds(const double share_of_limit = 1.) const
+    {
+      return value > share_of_limit * limit;
+    }
+
+    double over_limit() const
+    {
+      return value / limit;
+    }
+  };
+
+
+  /** The bonds that a criterion is for; all of it outlives the criterion. */
+  template <int dim>
+  struct BreakableBonds
+  {
+    const Families<dim> &families;
+    const Material      &material;
+    /** Energy per area of what a plane at an owned node cuts, all stretched by s, over s^2. */
+    std::function<double(unsigned int)> crossing_energy;
+  };
+
+
+  /**
+   * When a bond of a solid breaks for good: its measure is above its limit. The same for
+   * peridynamics alone (BondBreaking) and for zones beside elements (ZoneBreaking). Not collective.
+   */
+  template <int dim>
+  class DamageCriterion
+  {
+  public:
+    virtual ~DamageCriterion() = default;
+
+    /**
+     * Of the bond between an owned node i and j, a node known here or the origin of its image; to
+     * the last bit the same from both ends.
+     *
+     * @param extension e, without thermal strain, times any positive number
+     * @param length x, times that number
+     */
+    virtual BondMeasure measure(const unsigned int i,
+                                const unsigned int j,
+                                const double       extension,
+                                const double       length) const = 0;
+
+    /**
+     * Of owned nodes and ghosts: no bond is above its limit while e/x is not above the smaller
+     * value of both ends, so that StretchScreen can leave nodes out and a zone knows where to grow.
+     * Minus infinity: not known, all bonds are looked at, and no zone follows.
+     */
+    virtual const std::vector<double> &least_stretches() const = 0;
+
+    /** Critical stretches of owned nodes and ghosts, as they are reported. */
+    virtual const std::vector<double> &of_nodes() const = 0;
+
+    virtual std::size_t memory_consumption() const = 0;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/instantiate.h>
+#include <perideal/base/point_order.h>
+#include <perideal/operators/solid/bond_damage.h>
+#include <perideal/operators/solid/bond_strengths.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The one list of criteria, each by its entries; null: no bonds break. */
+    template <int dim>
+    std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds)
+    {
+      if (bonds.material.critical_stretch || bonds.material.fracture_energy)
+        return std::make_unique<BondStrengths<dim>>(bonds);
+      return nullptr;
+    }
+  } // namespace
+
+
+  template <int dim>
+  BondDamage<dim>::BondDamage(const Families<dim>                  &families,
+                              const BodyParameters<dim>            &body,
+                              std::function<double(unsigned int)> &&crossing_energy)
+    : families(families)
+    , body(body)
+    , criterion(criterion_of<dim>({families, body.material, std::move(crossing_energy)}))
+  {}
+
+
+  template <int dim>
+  bool BondDamage<dim>::select(const double share)
+  {
+    double most = 0.;
+    for (const Overstretched &bond : overstretched)
+      most = std::max(most, bond.ratio);
+    most = Utilities::MPI::max(most, families.nodes().communicator());
+    if (most == 0.)
+      return false;
+    overstretched.erase(
+      std::remove_if(overstretched.begin(),
+                     overstretched.end(),
+                     [&](const Overstretched &bond) { return bond.ratio < share * most; }),
+      overstretched.end());
+    if (!so_far.places.elsewhere)
+      keep_places(most);
+    return true;
+  }
+
+
+  template <int dim>
+  void BondDamage<dim>::keep_places(const double most)
+  {
+    BreakPlaces      &places = so_far.places;
+    const Nodes<dim> &nodes  = families.nodes();
+    const auto       &list   = body.boundary_conditions.traction;
+    const auto        side   = [&](const unsigned int node) {
+      return loaded_side.empty() ? numbers::invalid_unsigned_int : loaded_side[node];
+    };
+    // Ends of bonds beside each side, and of those elsewhere.
+    std::vector<double> n_ends(list.size() + 1, 0.), all(n_ends);
+    for (const Overstretched &bond : overstretched)
+      n_ends[std::min<std::size_t>({side(bond.node), side(bond.neighbor), list.size()})] +=
+        bond.n_ends;
+    Utilities::MPI::sum(n_ends, nodes.communicator(), all);
+    places.elsewhere = all.back() > 0.;
+    for (unsigned int k = 0; k < list.size() && !places.elsewhere; ++k)
+      if (all[k] > 0.)
+        places.beside_loads[list[k].name] += static_cast<unsigned long long>(0.5 * all[k]);
+    if (!places.first.empty())
+      return;
+    // Of bonds that are stretched alike, but for round-off, the first in space.
+    std::vector<Point<dim>> first;
+    const auto              keep = [](std::vector<Point<dim>> &found, const Point<dim> &p) {
+      if (found.empty() || comes_first(p, found[0]))
+        found.assign(1, p);
+    };
+    for (const Overstretched &bond : overstretched)
+      if (bond.ratio >= (1. - 1e-6) * most)
+        {
+          const Point<dim> &a = nodes.position(bond.node);
+          keep(first, a + 0.5 * (nodes.position(bond.neighbor) - a));
+        }
+    for (const auto &of_one : Utilities::MPI::all_gather(nodes.communicator(), first))
+      for (const Point<dim> &p : of_one)
+        keep(first, p);
+    places.first.assign(first[0].begin_raw(), first[0].end_raw());
+  }
+
+
+  template <int dim>
+  std::vector<double> BondDamage<dim>::damage_with_ghosts() const
+  {
+    Vector                    of_nodes(families.nodes().partitioner());
+    const std::vector<double> owned = damage();
+    std::copy(owned.begin(), owned.end(), of_nodes.begin());
+    of_nodes.update_ghost_values();
+    return {of_nodes.begin(), of_nodes.begin() + families.nodes().n_local()};
+  }
+
+
+  PERIDEAL_INSTANTIATE_CLASS(class BondDamage);
+} // namespace PeriDeal
