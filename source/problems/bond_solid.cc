@@ -528,14 +528,9 @@ namespace PeriDeal
             if constexpr (dim == 2)
               if (scene.material.law.kind == SolidLaw::viscoelastic)
                 {
-                  // In plane strain; the bulk modulus does not relax.
-                  const double warmth = change.size() > 0 ?
-                                          change.local_element(i) :
-                                          scene.elasticity.temperature_change.value(p);
+                  // In plane strain, cold; the bulk modulus does not relax.
                   stress.back()[2][2] =
-                    3. * scene.material.moduli(p).bulk *
-                      (trace(tensors.strain[i]) -
-                       3. * scene.material.thermal_expansion.value(p) * warmth) -
+                    3. * scene.material.moduli(p).bulk * trace(tensors.strain[i]) -
                     stress.back()[0][0] - stress.back()[1][1];
                 }
           }

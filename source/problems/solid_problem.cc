@@ -212,8 +212,7 @@ namespace PeriDeal
         const bool of_both = scene.elasticity.absolute_reference.has_value();
         if (of_both && scene.time.time_step > 0.)
           return scene.time.time_step;
-        const bool in_steps = of_both || scene.material.fracture_energy ||
-                              scene.material.critical_stretch ||
+        const bool in_steps = of_both || scene.material.breaks() ||
                               scene.elasticity.has_full_kinematics() || !scene.cracks.tips.empty();
         return (in_steps ? share : 1.) * scene.time.end_time;
       }

@@ -24,7 +24,7 @@ namespace PeriDeal
   void refuse_cracks(const Scene<dim> &scene)
   {
     const Cracks<dim> &cracks = scene.cracks;
-    const auto refuse = [&](const bool fault, const std::string &what) {
+    const auto         refuse = [&](const bool fault, const std::string &what) {
       cracks.refuse(fault && cracks.through_tips == ThroughTips::in_part,
                     "Bonds through tips",
                     "'in part' " + what + "; use 'auto', 'cut' or 'keep'.");
@@ -500,6 +500,59 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void refuse_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled)
+  {
+    const Material &material = body.material;
+    const SolidLaw  kind     = material.law.kind;
+    if (kind == SolidLaw::linear)
+      return;
+    body.coupling.refuse(
+      kind == SolidLaw::viscoelastic && coupled && body.coupling.scheme != CouplingScheme::blending,
+      "Scheme",
+      "found '" + body.coupling.text("Scheme") +
+        "', whose bonds take over bulk stiffness, too; with 'Law = viscoelastic' in section 'Material' use 'blending'.");
+    material.refuse(
+      kind == SolidLaw::formula && by_elements && !coupled,
+      "Law",
+      "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
+    const bool is_warm = body.elasticity.computes_temperature ||
+                         !is_zero(body.elasticity.temperature_change);
+    material.refuse(by_elements && is_warm,
+                    "Law",
+                    "found '" + material.text("Law") +
+                      "', which knows no 'Temperature change' (section 'Elasticity'), beside or "
+                      "instead of finite elements; use 'Models = peridynamics'.");
+    material.refuse(
+      kind == SolidLaw::viscoelastic && dim == 2 && is_warm,
+      "Law",
+      "'viscoelastic' knows no 'Temperature change' (section 'Elasticity') in plane strain, where what the temperature strains the body by out of the plane would relax, too; use 'Dimension = 3'.");
+    body.coupling.refuse(
+      kind == SolidLaw::formula && coupled && body.coupling.splices(),
+      "Scheme",
+      "'splice' is for 'Law = linear' (section 'Material'); use 'exchange' or 'blending'.");
+    material.refuse(
+      kind == SolidLaw::viscoelastic && (dim == 1 || body.elasticity.is_bond_based()),
+      "Law",
+      "'viscoelastic' is a shear modulus that relaxes while the bulk modulus stays: it "
+      "is for 'Dimension' 2 and 3 with 'Model = state-based'.");
+    material.refuse(
+      kind == SolidLaw::viscoelastic && dim == 2 && body.elasticity.plane == PlaneState::stress,
+      "Law",
+      "'viscoelastic' is for 'Plane = strain' in section 'Elasticity': in plane stress "
+      "the strain out of the plane would relax, too.");
+    body.elasticity.refuse(
+      kind == SolidLaw::formula && body.elasticity.solver == ElasticSolver::linear,
+      "Solver",
+      "is 'linear', but 'Law = formula' in section 'Material' is not. Use 'conjugate gradients', or 'dynamics'.");
+    body.elasticity.refuse(body.elasticity.absolute_reference.has_value(),
+                           "Heat of deformation",
+                           "is that of the linear law; 'Law' in section 'Material' is '" +
+                             material.text("Law") + "'.");
+  }
+
+
+  PERIDEAL_INSTANTIATE_FUNCTION(refuse_law);
   PERIDEAL_INSTANTIATE_FUNCTION(refuse_cracks);
   PERIDEAL_INSTANTIATE_FUNCTION(refuse_families);
   PERIDEAL_INSTANTIATE_FUNCTION(refuse_beyond_sides);

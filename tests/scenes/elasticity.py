@@ -211,15 +211,15 @@ def laws():
         table.add(f"FEM: extension at t = {t}", runs[1].probe(FE, (2, 1), time=t, column="ux"), 0.02 * creep(t), relative=1e-11 if t == 0 else 3e-4)
     errors = [abs(run.probe(FE, (2, 1), time=4, column="ux") / (0.02 * creep(4)) - 1) for run in runs]
     table.add("FEM: order in the step", math.log2(errors[0] / errors[1]), 2, absolute=0.15)
-    # Bonds of the lattice make more of the bulk modulus than of the shear modulus, the blending has an error beside the sides; measured: 3.4e-3 and 8.5e-3.
-    for model, bound in ((PD, 5e-3), ("coupled", 1.3e-2)):
+    # Bonds of the lattice make more of the bulk modulus than of the shear modulus; measured: 3.4e-3 and, with bonds in the middle alone, 3.0e-4.
+    for model, bound in ((PD, 5e-3), ("coupled", 5e-4)):
         for t in times[1:]:
             grown = runs[1].probe(model, (2, 1), time=t, column="ux") / runs[1].probe(model, (2, 1), time=0, column="ux")
             table.add(f"{model}: growth of the extension until t = {t}", grown, creep(t) / creep(0), relative=bound)
-    # Of stress what equilibrium says, and out of the plane what the bulk modulus, which does not relax, does. Measured: 1e-4 and 6e-2.
+    # Of stress what equilibrium says, and out of the plane what the bulk modulus, which does not relax, does. Measured, over 0.01: 7e-5 and 7e-2.
     for model, bound in ((FE, 1e-8), (PD, 5e-3), ("coupled", 0.08)):
-        at, of_elements = (runs[1].rows(name, (0.5, 0.5), time=4)[0] for name in (model, FE))
-        strains = (of_elements["ux"] + of_elements["uy"]) / 0.5
+        at, of_elements = (runs[1].rows(name, (1, 0.5), time=4)[0] for name in (model, FE))
+        strains = of_elements["ux"] + of_elements["uy"] / 0.5
         for column, wanted in (("sxx", 0.01), ("syy", 0), ("szz", 3 * 2 * strains - 0.01)):
             table.add(f"{model}: {column} inside at t = 4", at[column], wanted, absolute=bound * 0.01)
     for model in (FE, PD, "coupled"):

@@ -6,7 +6,6 @@
 #include <perideal/bonds/families.h>
 #include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/body_parameters.h>
-#include <perideal/scene/rules.h>
 
 #include <array>
 #include <vector>
@@ -55,9 +54,6 @@ namespace PeriDeal
       unsigned int      origin = 0; // the node that it is an image of
       double            volume = 0.;
     };
-
-    /** What a body has to be (scene/rules.h). */
-    static constexpr auto require = &refuse_beyond_sides<dim>;
 
     FictitiousExtension(const Families<dim>                   &families,
                         const std::array<BeyondSide, 2 * dim> &beyond);

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <perideal/laws/lattice_family.h>
-#include <perideal/scene/rules.h>
 
 #include <optional>
 #include <vector>
@@ -34,9 +33,6 @@ namespace PeriDeal
   class KernelWeights
   {
   public:
-    /** What a body has to be (scene/rules.h). */
-    static constexpr auto require = &refuse_families<dim>;
-
     /**
      * Throws UserError as lattice_family() does.
      * @param spacing           of the lattice; none: nodes of any places

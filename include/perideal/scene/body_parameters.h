@@ -91,8 +91,7 @@ namespace PeriDeal
   template <int dim>
   bool lists_bonds(const BodyParameters<dim> &body)
   {
-    return body.material.fracture_energy || body.material.critical_stretch ||
-           body.material.law.kind != SolidLaw::linear;
+    return body.material.breaks() || body.material.law.kind != SolidLaw::linear;
   }
 
 

@@ -35,6 +35,13 @@ namespace PeriDeal
   template <int dim>
   void refuse_coupled_families(const BodyParameters<dim> &body);
 
+  /**
+   * Of another `Law` than the linear one.
+   * @param by_elements finite elements are in the model, @p coupled beside bonds
+   */
+  template <int dim>
+  void refuse_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled);
+
   /** Of the models of diffusion that a scene names, one after the other. */
   template <int dim>
   void refuse_diffusion(const Scene<dim> &scene);

@@ -21,7 +21,7 @@ namespace PeriDeal
     template <int dim>
     std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds)
     {
-      if (bonds.material.critical_stretch || bonds.material.fracture_energy)
+      if (bonds.material.breaks())
         return std::make_unique<BondStrengths<dim>>(bonds);
       return nullptr;
     }

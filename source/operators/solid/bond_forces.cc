@@ -244,8 +244,8 @@ namespace PeriDeal
   {
     u.update_ghost_values();
     ends.find(u.begin());
-    std::vector<double> histories(law.n_history());
-    double              sum = 0.;
+    histories.resize(law.n_history());
+    double sum = 0.;
     for (const unsigned int i : of_nodes)
       {
         double     of_node = 0.;

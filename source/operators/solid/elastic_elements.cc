@@ -11,8 +11,8 @@
 #include <perideal/operators/parts/event_work.h>
 #include <perideal/operators/parts/lumped_mass.h>
 #include <perideal/operators/solid/elastic_elements.h>
-#include <perideal/operators/solid/law_steps.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/rules.h>
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +77,22 @@ namespace PeriDeal
     }
 
 
+    /** What shear of the cells stores by the law, or dissipates in the step. Collective. */
+    template <typename Law>
+    double shear_energy(const Law &law, const Vector &u, const bool dissipated)
+    {
+      double sum = 0.;
+      for (unsigned int k = 0; k < law.nodal.steps->n_parts(dissipated); ++k)
+        {
+          law.nodal.find_part(law.change, u, k, dissipated);
+          law.shear.multiply(law.forces, law.change);
+          law.change.set_ghost_state(false);
+          sum += 0.5 * (law.change * law.forces);
+        }
+      return sum;
+    }
+
+
     /** Laws that know it. Collective. */
     template <int dim>
     void tell_damage(const ZoneBreaking<dim> &breaking, NodalLaw &law)
@@ -91,7 +107,7 @@ namespace PeriDeal
   void ElasticElements<dim>::require(const BodyParameters<dim> &body, const bool coupled)
   {
     SolidOperator<dim>::require(body);
-    require_law(body, true, coupled);
+    refuse_law(body, true, coupled);
     if (coupled)
       return SolidBondsBesideElements<dim>::require(body);
     body.elasticity.refuse(
@@ -699,12 +715,14 @@ namespace PeriDeal
       return;
     law->nodal.steps.set_time(t);
     const WithGhosts ghosts(u);
-    const auto   multiply_shear = [&](Vector &y, const Vector &x) { law->shear.multiply(y, x); };
-    const double of_bonds =
-      breaking ? breaking->bonds.energy(u, breaking->bonds.nodes(), {}, true) : 0.;
-    if (cells.with_shear)
-      this->released_beside.by_law += law->nodal.energy(u, true, multiply_shear);
-    this->released_beside.by_law += Utilities::MPI::sum(of_bonds, nodes->get_mpi_communicator());
+    if (cells.with_shear) // else there is no history
+      {
+        const double of_bonds =
+          breaking ? breaking->bonds.energy(u, breaking->bonds.nodes(), {}, true) : 0.;
+        this->released_beside.by_law +=
+          shear_energy(*law, u, true) +
+          Utilities::MPI::sum(of_bonds, nodes->get_mpi_communicator());
+      }
     law->nodal.accept(u, t);
   }
 
@@ -720,13 +738,12 @@ namespace PeriDeal
         return 0.5 * (u * image) - u * thermal_loads + thermal_energy + contact->energy(u);
       }
     const WithGhosts ghosts(u);
-    const auto multiply_shear = [&](Vector &y, const Vector &x) { law->shear.multiply(y, x); };
     stiffness.multiply(image, u);
     double sum = 0.5 * (u * image);
     if (cells.with_shear)
       {
-        multiply_shear(image, u);
-        sum += law->nodal.energy(u, false, multiply_shear) - 0.5 * (u * image);
+        law->shear.multiply(image, u);
+        sum += shear_energy(*law, u, false) - 0.5 * (u * image);
       }
     const double of_bonds = breaking ? breaking->bonds.energy(u, breaking->bonds.nodes(), {}) : 0.;
     return sum + Utilities::MPI::sum(of_bonds, nodes->get_mpi_communicator()) + contact->energy(u);

@@ -22,13 +22,13 @@ namespace PeriDeal
   template <typename Act>
   void NodalLaw::for_each(const Vector &u, const Act &act) const
   {
-    const auto         &layout = *u.get_partitioner();
-    std::vector<double> history(histories.size());
+    const auto &layout = *u.get_partitioner();
+    of_one.resize(histories.size());
     for (unsigned int i = 0; i < layout.locally_owned_size() + layout.n_ghost_indices(); ++i)
       {
-        for (unsigned int k = 0; k < history.size(); ++k)
-          history[k] = histories[k].local_element(i);
-        act(i, BondValues{u.local_element(i), 1.}, history);
+        for (unsigned int k = 0; k < of_one.size(); ++k)
+          of_one[k] = histories[k].local_element(i);
+        act(i, BondValues{u.local_element(i), 1.}, of_one);
       }
   }
 
@@ -42,24 +42,15 @@ namespace PeriDeal
   }
 
 
-  double NodalLaw::energy(const Vector                                          &u,
-                          const bool                                             dissipated,
-                          const std::function<void(Vector &y, const Vector &x)> &multiply) const
+  void NodalLaw::find_part(Vector            &part,
+                           const Vector      &u,
+                           const unsigned int k,
+                           const bool         dissipated) const
   {
-    Vector part(u), image(u);
-    double sum = 0.;
-    for (unsigned int k = 0; k < steps->n_parts(dissipated); ++k)
-      {
-        for_each(u, [&](const unsigned int i, const BondValues &value, const auto &history) {
-          part.local_element(i) = steps->part(k, dissipated, value, history.data());
-        });
-        part.set_ghost_state(true);
-        multiply(image, part);
-        part.set_ghost_state(false);
-        image.set_ghost_state(false);
-        sum += 0.5 * (part * image);
-      }
-    return sum;
+    for_each(u, [&](const unsigned int i, const BondValues &value, const auto &history) {
+      part.local_element(i) = steps->part(k, dissipated, value, history.data());
+    });
+    part.set_ghost_state(true);
   }
 
 

@@ -8,6 +8,7 @@
 #include <perideal/operators/solid/solid_bonds.h>
 #include <perideal/operators/solid/surface_factors.h>
 #include <perideal/scene/beyond_sides.h>
+#include <perideal/scene/rules.h>
 
 #include <algorithm>
 #include <cmath>
@@ -73,14 +74,14 @@ namespace PeriDeal
   {
     const Peridynamics &pd = body.peridynamics;
     if (pd.completes_families())
-      FictitiousExtension<dim>::require(body);
+      refuse_beyond_sides(body);
     if (pd.corrects_elastic_bonds())
       require_surface_factors(body);
     const std::string not_lattice = StateLattice<dim>::obstacle(body);
     pd.refuse(pd.wants_lattice_form() && !not_lattice.empty(),
               "Operator form",
               "'lattice' is not defined here: " + not_lattice + "; use 'auto'.");
-    KernelWeights<dim>::require(body);
+    refuse_families(body);
     if (body.elasticity.micromodulus != Micromodulus::constant)
       return;
     body.elasticity.refuse(

@@ -9,6 +9,7 @@
 #include <perideal/operators/coupling/state_coupling.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid/zone_breaking.h>
+#include <perideal/scene/rules.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,12 +31,12 @@ namespace PeriDeal
       "'full' is not for 'Models = coupled', whose coefficients are those of the undeformed body.");
     ZoneBreaking<dim>::require(body);
     if (!body.coupling.exchanges())
-      StateCoupling<dim>::require(body);
+      refuse_coupled_families(body);
     body.peridynamics.refuse(
       body.peridynamics.completes_families() && body.coupling.exchanges(),
       "Surface correction",
       "'fictitious nodes' is not for 'Scheme = exchange', whose bonds need no correction. Use 'none', or 'splice' or 'blending'.");
-    Coupling<dim>::require(body);
+    refuse_coupling(body);
   }
 
 

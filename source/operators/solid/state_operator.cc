@@ -383,7 +383,8 @@ namespace PeriDeal
     if (!solid.law.any())
       return;
     solid.law.set_time(t);
-    this->released_beside.by_law += solid.forces.energy_of(solid.rows.body.nodes, u, true);
+    if (solid.law.n_history() > 0)
+      this->released_beside.by_law += solid.forces.energy_of(solid.rows.body.nodes, u, true);
     solid.law.accept(t);
   }
 

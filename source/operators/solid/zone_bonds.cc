@@ -209,9 +209,11 @@ namespace PeriDeal
                                 const double                    *thermal,
                                 const bool                       dissipated) const
   {
-    double              sum = 0.;
-    BondValues          of_node{0., 1.};
-    std::vector<double> histories(law != nullptr ? law->histories.size() : 0);
+    double               sum = 0.;
+    BondValues           of_node{0., 1.};
+    std::vector<double>  none;
+    std::vector<double> &histories = law != nullptr ? law->of_node : none;
+    histories.resize(law != nullptr ? law->histories.size() : 0);
     for (const unsigned int i : of_nodes)
       {
         double all = 0.;

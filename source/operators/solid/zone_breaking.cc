@@ -499,7 +499,7 @@ namespace PeriDeal
     const std::string      entry    = material.fracture_energy  ? "Fracture energy" :
                                       material.critical_stretch ? "Critical stretch" :
                                                                   "Law";
-    const bool             breaks   = material.fracture_energy || material.critical_stretch;
+    const bool             breaks   = material.breaks();
     coupling.refuse(
       coupling.follows_stretches() && !breaks,
       "Zone",

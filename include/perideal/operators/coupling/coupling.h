@@ -8,7 +8,6 @@
 
 #include <perideal/bonds/diffusion_bonds.h>
 #include <perideal/operators/lattice/bond_form.h>
-#include <perideal/scene/rules.h>
 #include <perideal/scene/zone.h>
 
 #include <memory>
@@ -47,9 +46,6 @@ namespace PeriDeal
 
     Coupling(const Coupling &)            = delete;
     Coupling &operator=(const Coupling &) = delete;
-
-    /** What a body has to be (scene/rules.h). */
-    static constexpr auto require = &refuse_coupling<dim>;
 
     /**
      * What the row of an owned node has of bonds, in a fixed order: `weight` W_ij, and `intact` as

@@ -9,7 +9,6 @@
 #include <perideal/operators/coupling/node_families.h>
 #include <perideal/operators/coupling/weighted_coupling.h>
 #include <perideal/scene/body_parameters.h>
-#include <perideal/scene/rules.h>
 
 #include <optional>
 #include <vector>
@@ -49,9 +48,6 @@ namespace PeriDeal
     using typename Coupling<dim>::Cell;
     using typename NodeFamilies<dim>::Family;
     using typename NodeFamilies<dim>::ThermalStrain;
-
-    /** What a body has to be (scene/rules.h). */
-    static constexpr auto require = &refuse_coupled_families<dim>;
 
     /** As WeightedCoupling. */
     StateCoupling(Nodes<dim>                &nodes,

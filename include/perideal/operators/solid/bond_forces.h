@@ -167,6 +167,7 @@ namespace PeriDeal
     // Of owned nodes and ghosts, with full kinematics, for the loops over rows.
     mutable std::vector<DeformedRows::Node> nodes;
     mutable std::vector<unsigned char>      exceeds;
+    mutable std::vector<double>             histories;    // of a node's bonds, summed
     mutable bool                            seen = false; // exceeds is that of these displacements
   };
 } // namespace PeriDeal

@@ -285,7 +285,7 @@ namespace PeriDeal
     {
       NodalLaw                nodal;
       ElementMatrix<dim, dim> shear;          // S, if the law relaxes
-      mutable Vector          change, forces; // of multiply_shear()
+      mutable Vector          change, forces; // by it; memory
     };
     std::unique_ptr<Law> law; // null: the linear one
   };

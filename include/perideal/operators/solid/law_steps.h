@@ -6,7 +6,7 @@
 #include <perideal/base/archive.h>
 #include <perideal/bonds/bond_state.h>
 #include <perideal/laws/bond_law.h>
-#include <perideal/scene/body_parameters.h>
+#include <perideal/scene/material.h>
 
 #include <memory>
 #include <vector>
@@ -54,14 +54,6 @@ namespace PeriDeal
     bool                     begun    = false;
     double                   accepted = 0.;
   };
-
-
-  /**
-   * Throws UserError for a body that cannot have the law of its scene. Not collective.
-   * @param by_elements finite elements are in the model, @p coupled beside bonds
-   */
-  template <int dim>
-  void require_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled);
 
 
   /**

@@ -8,7 +8,6 @@
 #include <perideal/base/types.h>
 #include <perideal/operators/solid/law_steps.h>
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -23,7 +22,7 @@ namespace PeriDeal
   class NodalLaw
   {
   public:
-    /** @param layout of the unknowns; null if there is no law. Collective. */
+    /** Of another law than the linear one. @param layout of the unknowns. Collective. */
     NodalLaw(const Material::Law &law, const Vector &layout);
 
     /** Cells follow the law, too, not the bonds alone. */
@@ -37,13 +36,11 @@ namespace PeriDeal
      */
     void find_change(Vector &change, const Vector &u) const;
 
-    /**
-     * The energy that is stored, or dissipated in the step, where the shear stiffness S makes the
-     * image y = S x. Collective.
-     */
-    double energy(const Vector                                          &u,
-                  const bool                                             dissipated,
-                  const std::function<void(Vector &y, const Vector &x)> &multiply) const;
+    /** BondLaw::part() of displacements u, likewise. */
+    void find_part(Vector            &part,
+                   const Vector      &u,
+                   const unsigned int k,
+                   const bool         dissipated) const;
 
     /** The state u, with ghosts, is accepted. */
     void accept(const Vector &u, const double t);
@@ -67,15 +64,15 @@ namespace PeriDeal
                           const unsigned int            j,
                           const dealii::Tensor<1, dim> &xi) const
     {
-      of_bond.resize(histories.size());
-      for (unsigned int k = 0; k < of_bond.size(); ++k)
+      of_one.resize(histories.size());
+      for (unsigned int k = 0; k < of_one.size(); ++k)
         {
-          of_bond[k] = 0.;
+          of_one[k] = 0.;
           for (unsigned int d = 0; d < dim; ++d)
-            of_bond[k] += xi[d] * (histories[k].local_element(dim * j + d) -
-                                   histories[k].local_element(dim * i + d));
+            of_one[k] += xi[d] * (histories[k].local_element(dim * j + d) -
+                                  histories[k].local_element(dim * i + d));
         }
-      return of_bond.data();
+      return of_one.data();
     }
 
     /** c* of such a bond. */
@@ -92,8 +89,10 @@ namespace PeriDeal
     std::vector<Vector> histories; // of the displacements of nodes, ghosts up to date
     std::vector<double> damage;    // of nodes of this process and ghosts; empty: none
 
+    mutable std::vector<double> of_node; // memory of who sums histories over bonds
+
   private:
-    mutable std::vector<double> of_bond;
+    mutable std::vector<double> of_one; // bond or unknown
 
     /** act(i, displacement, history) for all unknowns of this process and ghosts. */
     template <typename Act>

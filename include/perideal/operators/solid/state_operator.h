@@ -8,6 +8,7 @@
 #include <perideal/operators/solid/short_range_contact.h>
 #include <perideal/operators/solid/solid_operator.h>
 #include <perideal/operators/solid/solid_tensors.h>
+#include <perideal/scene/rules.h>
 
 #include <memory>
 #include <vector>
@@ -49,7 +50,7 @@ namespace PeriDeal
       SolidOperator<dim>::require(body);
       SolidBonds<dim>::require(body);
       require_traction_layer(body);
-      require_law(body, false, false);
+      refuse_law(body, false, false);
     }
 
     /** Adds the halo to the nodes. Collective. Throws UserError, among others: isolated nodes. */
