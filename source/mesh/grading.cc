@@ -6,6 +6,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <perideal/base/instantiate.h>
+#include <perideal/mesh/body_corners.h>
 #include <perideal/mesh/grading.h>
 
 #include <algorithm>
@@ -65,9 +66,16 @@ namespace PeriDeal
   {
     /** The ends of cracks as they are at last, in 3D their edges, and nothing around them. */
     template <int dim>
-    Zone<dim> zone_of_ends(const CrackHistory<dim> &history, const double end)
+    Zone<dim> zone_of_ends(const CrackHistory<dim>                    &history,
+                           const double                                end,
+                           const std::vector<std::vector<Point<dim>>> &corners)
     {
       std::vector<CrackPiece<dim>> ends;
+      for (const std::vector<Point<dim>> &corner : corners)
+        {
+          ends.emplace_back();
+          ends.back().corners = {corner.front(), corner.back()};
+        }
       for (const CrackPiece<dim> &piece : history.pieces(end))
         for (std::size_t k = 0; k < piece.corners.size(); ++k)
           {
@@ -83,27 +91,61 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** A mesh that is no lattice has no horizon unless it is given, and needs none without bonds. */
+    template <int dim>
+    double horizon_of_zone(const Scene<dim> &scene)
+    {
+      return scene.domain.has_lattice() || scene.peridynamics.horizon > 0. ? scene.horizon() : 0.;
+    }
+
+
+    template <int dim>
+    unsigned int finest_level(const Domain<dim> &domain, const Triangulation<dim> &mesh)
+    {
+      if (!domain.has_lattice())
+        return domain.coarsening.refinements;
+      return std::lround(std::log2(mesh.begin(0)->extent_in_direction(0) / domain.spacing()[0]));
+    }
+
+
+    template <int dim>
+    BoundingBox<dim> box_around(const Domain<dim> &domain, const Triangulation<dim> &mesh)
+    {
+      if (domain.has_lattice())
+        return BoundingBox<dim>({domain.lower, domain.upper});
+      return BoundingBox<dim>(mesh.get_vertices());
+    }
+  } // namespace
+
+
   template <int dim>
   Grading<dim>::Grading(const Scene<dim> &scene, const Triangulation<dim> &mesh)
-    : zone(scene.coupling, scene.horizon())
+    : zone(scene.coupling, horizon_of_zone(scene))
     , by_zone(true)
     , by_name(scene.domain.coarsening.by_formula || scene.domain.coarsening.at_ends)
     , history(scene.crack_history())
     , adaptations(adaptation_times(scene, history))
-    , finest(
-        std::lround(std::log2(mesh.begin(0)->extent_in_direction(0) / scene.domain.spacing()[0])))
+    , finest(finest_level(scene.domain, mesh))
     , coarsest(finest - scene.domain.coarsening.times)
     , end(scene.cracks.end_time)
   {
-    zone.stay_in({{scene.domain.lower, scene.domain.upper}}); // cells are merged in boxes only
-    for (unsigned int d = 0; d < dim; ++d)
+    for (unsigned int d = 0; d < dim && scene.domain.has_lattice(); ++d)
       spacing = std::max(spacing, scene.domain.spacing()[d]);
-    const auto &models = scene.general.models;
+    const auto            &models     = scene.general.models;
+    const BoundingBox<dim> box        = box_around(scene.domain, mesh);
+    const auto            &coarsening = scene.domain.coarsening;
+    zone.stay_in(box);
     if (by_name)
       {
-        named = scene.domain.coarsening.at_ends ? zone_of_ends(history, end) :
-                                                  Zone<dim>(scene.domain.coarsening.fine);
-        named.stay_in({{scene.domain.lower, scene.domain.upper}});
+        named = coarsening.at_ends ?
+                  zone_of_ends(history,
+                               end,
+                               coarsening.at_corners ? corners_of_body(scene, mesh) :
+                                                       std::vector<std::vector<Point<dim>>>()) :
+                  Zone<dim>(coarsening.fine);
+        named.stay_in(box);
         by_zone = std::find(models.begin(), models.end(), ModelKind::coupled) != models.end();
       }
     set_time(0.);
@@ -133,7 +175,8 @@ namespace PeriDeal
       return false;
     // Two cells of each finer size lie between this one and the fine part.
     constexpr double slack = 1e-6;
-    const double     rim   = 2. * spacing * ((1u << (finest - level)) - 1. + slack),
+    const double     fine  = spacing > 0. ? spacing : cell->diameter() / (1u << (finest - level));
+    const double     rim   = 2. * fine * ((1u << (finest - level)) - 1. + slack),
                  half      = 0.5 * cell->diameter();
     return distance(cell->center(), half + 2. * rim) < half + rim;
   }

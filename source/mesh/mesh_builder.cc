@@ -5,18 +5,16 @@
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>
-#include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/numerics/rtree.h>
 
 #include <perideal/base/clipped.h>
 #include <perideal/base/instantiate.h>
-#include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
+#include <perideal/mesh/given_mesh.h>
 #include <perideal/mesh/grading.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/scene/boundary_conditions.h>
-#include <perideal/scene/msh_file.h>
 
 #include <algorithm>
 #include <array>
@@ -150,68 +148,6 @@ namespace PeriDeal
     }
 
 
-    /**
-     * Of the boundary faces of a file, by the number of the cell and of its face; cutting along
-     * cracks leaves both as they are.
-     */
-    using BoundaryIds = std::map<std::pair<unsigned int, unsigned int>, types::boundary_id>;
-
-
-    /** The text of a mesh file, once it is known that deal.II can read it. Collective. */
-    template <int dim>
-    std::string checked_mesh_file(const std::string &file_name,
-                                  const std::string &scene_folder,
-                                  const MPI_Comm     communicator)
-    {
-      std::string text, message;
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        try
-          {
-            text = text_of_msh(read_msh(file_name, scene_folder, dim), dim);
-          }
-        catch (const UserError &error)
-          {
-            message = error.message();
-          }
-      throw_on_all_if_any(communicator, message);
-      share_text(text, communicator);
-      return text;
-    }
-
-
-    template <int dim>
-    CoarseMesh<dim> read_mesh_file(const std::string &file_name,
-                                   const std::string &scene_folder,
-                                   const MPI_Comm     communicator,
-                                   BoundaryIds       &ids)
-    {
-      std::istringstream file(checked_mesh_file<dim>(file_name, scene_folder, communicator));
-      Triangulation<dim> mesh;
-      try
-        {
-          GridIn<dim> reader(mesh);
-          reader.read_msh(file);
-        }
-      catch (const std::exception &)
-        {
-          AssertThrow(false,
-                      UserError("'Mesh file' in section 'Domain': '" + file_name +
-                                "' is not a mesh of dimension " + std::to_string(dim) +
-                                " that deal.II can use, or it is broken."));
-        }
-      AssertThrow(mesh.n_active_cells() > 0 && mesh.all_reference_cells_are_hyper_cube(),
-                  ExcInternalError());
-      CoarseMesh<dim> coarse;
-      SubCellData     faces;
-      std::tie(coarse.vertices, coarse.cells, faces) = GridTools::get_coarse_mesh_description(mesh);
-      for (const auto &cell : mesh.active_cell_iterators())
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            ids[{cell->active_cell_index(), f}] = cell->face(f)->boundary_id();
-      return coarse;
-    }
-
-
     /** Side of a box on which a boundary face lies, or the hole. */
     template <int dim>
     types::boundary_id box_side(const Domain<dim>                     &domain,
@@ -295,23 +231,16 @@ namespace PeriDeal
       return mesh;
     }
 
-    /** Coarse cells, and how often they are to be refined. @param ids of the faces of a file */
+    /** Coarse cells of a lattice, and how often they are to be refined. */
     template <int dim>
-    std::pair<CoarseMesh<dim>, unsigned int> coarse_mesh(const Scene<dim> &scene,
-                                                         const std::vector<CrackGeometry<dim>> &cut,
-                                                         const MPI_Comm            communicator,
-                                                         BoundaryIds              &ids,
-                                                         std::vector<std::string> &notes)
+    std::pair<CoarseMesh<dim>, unsigned int> coarse_lattice(
+      const Scene<dim>                      &scene,
+      const std::vector<CrackGeometry<dim>> &cut)
     {
       const Domain<dim> &domain = scene.domain;
       CoarseMesh<dim>    coarse;
       unsigned int       n_refinements = 0;
-      if (!domain.has_lattice())
-        {
-          coarse = read_mesh_file<dim>(domain.files.mesh, domain.files.folder, communicator, ids);
-          note_cracks_on_faces(coarse, scene.cracks, notes);
-        }
-      else if (domain.shape == Shape::plate_with_hole)
+      if (domain.shape == Shape::plate_with_hole)
         {
           coarse = lattice_mesh<dim>(domain, domain.cells, [&](const Point<dim> &p) {
             return !domain.holes.contains(p);
@@ -326,10 +255,31 @@ namespace PeriDeal
         });
       else
         std::tie(coarse, n_refinements) = box_mesh(domain, cut);
-      notes.insert(notes.end(), domain.notes.begin(), domain.notes.end());
-      if (domain.shape != Shape::box && n_refinements == 0)
-        require_resolved(coarse, cut);
       return {std::move(coarse), n_refinements};
+    }
+
+
+    /** Coarse cells, which are to be refined `coarsening.refinements` times. Collective. */
+    template <int dim>
+    GivenMesh<dim> coarse_mesh(const Scene<dim>         &scene,
+                               const MPI_Comm            communicator,
+                               std::vector<std::string> &notes)
+    {
+      GivenMesh<dim> given = given_mesh(scene.domain, communicator);
+      note_cracks_on_faces(given.coarse, scene.cracks, notes);
+      return given;
+    }
+
+
+    template <int dim>
+    void set_sides_of_lattice(const Domain<dim>                     &domain,
+                              const std::vector<CrackGeometry<dim>> &cut,
+                              Triangulation<dim>                    &mesh)
+    {
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            cell->face(f)->set_boundary_id(box_side(domain, cut, cell->face(f)->center()));
     }
   } // namespace
 
@@ -345,8 +295,16 @@ namespace PeriDeal
     if (cracks.on_faces())
       cut = make_crack_geometries(cracks.pieces(0.));
 
-    BoundaryIds ids;
-    auto [coarse, n_refinements] = coarse_mesh(scene, cut, communicator, ids, notes);
+    GivenMesh<dim> given;
+    unsigned int   n_refinements = domain.coarsening.refinements;
+    if (domain.has_lattice())
+      std::tie(given.coarse, n_refinements) = coarse_lattice(scene, cut);
+    else
+      given = coarse_mesh(scene, communicator, notes);
+    CoarseMesh<dim> &coarse = given.coarse;
+    notes.insert(notes.end(), domain.notes.begin(), domain.notes.end());
+    if (domain.shape != Shape::box && (n_refinements == 0 || !domain.has_lattice()))
+      require_resolved(coarse, cut);
     AssertThrow(n_refinements >= domain.coarsening.times,
                 UserError("'Coarsening' in section 'Domain' is " +
                           std::to_string(domain.coarsening.times) +
@@ -373,16 +331,10 @@ namespace PeriDeal
     std::unique_ptr<Triangulation<dim>> mesh =
       empty_triangulation<dim>(every_cell, work, communicator);
     mesh->create_triangulation(coarse.vertices, coarse.cells, SubCellData());
-    for (const auto &cell : mesh->cell_iterators_on_level(0))
-      for (const unsigned int f : cell->face_indices())
-        if (cell->face(f)->at_boundary())
-          {
-            const Point<dim> center = cell->face(f)->center();
-            const auto       found  = ids.find({static_cast<unsigned int>(cell->index()), f});
-            cell->face(f)->set_boundary_id(domain.has_lattice() ? box_side(domain, cut, center) :
-                                           found != ids.end()   ? found->second :
-                                                                  crack_boundary_id);
-          }
+    if (domain.has_lattice())
+      set_sides_of_lattice(domain, cut, *mesh);
+    else
+      given.mark(*mesh);
     if (n_refinements > domain.coarsening.times)
       mesh->refine_global(n_refinements - domain.coarsening.times);
     if (domain.coarsening.times > 0)
@@ -452,6 +404,10 @@ namespace PeriDeal
           if ((found < 0 || id < found) && (near.size() == 1 || cell->point_inside(p)))
             found = id;
         }
+      if (found < 0) // beside coarse cells, at a side that is round
+        for (const auto &[box, cell] : *tree | boost::geometry::index::adaptors::queried(
+                                                 boost::geometry::index::nearest(p, 1)))
+          found = static_cast<int>(cell->material_id());
       return found;
     };
   }

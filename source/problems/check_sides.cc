@@ -358,7 +358,7 @@ namespace PeriDeal
           UserError(
             "'" + entry + "' in section 'Boundary conditions' names the side '" + name +
             (from_file ?
-               "', which the mesh '" + scene.domain.files.mesh +
+               "', which the mesh '" + scene.domain.mesh_text() +
                  "' does not have. Its boundary ids and names are: " :
                "', but the hole in section 'Domain' leaves nothing of it. Sides that there are: ") +
             join_names(known) + "."));

@@ -66,9 +66,9 @@ namespace PeriDeal
   Domain<dim>::Domain()
     : SceneSection("Domain")
   {
-    declare(shape, "Shape", "box", {"box", "plate with hole", "mesh file", "image"}) =
-      "The body: a box of equal cells, such a box with a hole, a mesh read from a file, or the pixels of an image (in two "
-      "dimensions).";
+    declare(shape, "Shape", "box", {"box", "plate with hole", "mesh file", "image", "generator"}) =
+      "The body: a box of equal cells, such a box with a hole, a mesh read from a file, the pixels of an image (in two "
+      "dimensions), or a mesh of one of deal.II's generators.";
     declare("Lower corner", EntryType::list, repeated<dim>("0"), "length") =
       "The corner of the box with the smallest coordinates, one number per direction.";
     declare("Upper corner", EntryType::list, repeated<dim>("1"), "length") =
@@ -79,11 +79,20 @@ namespace PeriDeal
       "Edge length of the cells, instead of Cells. It must divide every edge of the box.";
     declare(coarsening.times, "Coarsening", "0") =
       "How often cells may be merged, two in each direction, away from where they have to stay as fine as `Cells` says: a graded mesh "
-      "with hanging nodes. `Cells` must allow as many halvings. Only for a box, and not for peridynamics alone.";
+      "with hanging nodes. `Cells` must allow as many halvings; of a mesh that is no lattice `Refinements` must. Only for a box and for such meshes, and not for peridynamics alone.";
     declare("Fine where", EntryType::text, "auto") =
       "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0, and in the zone of section `Coupling` if "
       "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. `crack ends`: at the ends of cracks, in three dimensions their "
-      "edges, and in that zone likewise. Beyond, there are at least two cells of each size.";
+      "edges, and in that zone likewise. `corners`: besides, at corners of the body that a mesh has, where its sides open to more than 225 degrees inside, and where on a smooth side given values end. "
+      "Beyond, there are at least two cells of each size.";
+    declare(coarsening.refinements, "Refinements", "0") =
+      "How often the cells of a mesh file, of a generator or of a plate with fitted rims are halved in each direction. Round sides of the latter two stay round.";
+    declare(holes.rims, "Rims", "stairs", {"stairs", "fitted"}) =
+      "Of holes in a box or a plate: `stairs` removes cells of the lattice; `fitted` lets the mesh follow their rims, a row of cells around each hole and `Refinements` halving them all. A mesh that is no lattice needs a `Horizon` that is a length for bonds.";
+    declare(files.generator, "Generator", "") =
+      "With `Shape = generator`: the name of one of deal.II's `GridGenerator`, such as hyper_shell, plate_with_a_hole, hyper_L. Sides have the numbers that it gives them.";
+    declare(files.arguments, "Generator arguments", "") =
+      "Its arguments as deal.II's `generate_from_name_and_arguments` reads them: separated by `:`, coordinates of a point by `,`.";
     declare("Nodes", EntryType::choice, "auto", "", {"vertices", "cell centers", "auto"}) =
       "Where the peridynamic nodes sit: `auto` is cell centers with `Shape = image`, else vertices. Finite elements use the vertices "
       "in any case.";
@@ -221,17 +230,22 @@ namespace PeriDeal
   template <int dim>
   void Domain<dim>::parse_fine_part()
   {
-    coarsening.at_ends    = trimmed(text("Fine where")) == "crack ends";
+    coarsening.at_corners = trimmed(text("Fine where")) == "corners";
+    coarsening.at_ends    = trimmed(text("Fine where")) == "crack ends" || coarsening.at_corners;
     coarsening.by_formula = text("Fine where") != "auto" && !coarsening.at_ends;
     if ((coarsening.by_formula || coarsening.at_ends) && coarsening.times == 0)
       error("Fine where", "has no effect: 'Coarsening' is 0, so all cells are fine.");
     if (coarsening.times == 0)
       return;
-    if (shape != Shape::box)
+    if (shape != Shape::box && has_lattice())
       error("Coarsening",
             "found " + text("Coarsening") + ", but 'Shape' is '" + text("Shape") +
               "': only the lattice of a box has cells to merge. Use 0.");
-    for (unsigned int d = 0; d < dim; ++d)
+    refuse(!has_lattice() && coarsening.times > coarsening.refinements,
+           "Coarsening",
+           "found " + text("Coarsening") + ", but 'Refinements' is " + text("Refinements") +
+             ": cells cannot be larger than those of the mesh.");
+    for (unsigned int d = 0; has_lattice() && d < dim; ++d)
       if (coarsening.times > 20 || cells[d] % (1u << coarsening.times) != 0)
         {
           unsigned int possible = 0;
@@ -281,14 +295,18 @@ namespace PeriDeal
     holes.listed = parse_holes(text("Holes"), where("Holes"));
     if (holes.listed.empty())
       return;
-    if (shape == Shape::mesh_file || shape == Shape::image)
+    if (shape == Shape::mesh_file || shape == Shape::image || shape == Shape::generator)
       error("Holes",
             "is for 'Shape = box' and 'plate with hole'; this body has its holes in the " +
-              std::string(shape == Shape::image ? "image." : "mesh file."));
+              std::string(shape == Shape::image     ? "image." :
+                          shape == Shape::generator ? "mesh of its generator." :
+                                                      "mesh file."));
     refuse(dim == 1, "Holes", "needs 'Dimension' 2 or 3.");
     holes.has_one = shape == Shape::plate_with_hole &&
                     (is_given("Hole center") || is_given("Hole radius"));
     shape = Shape::plate_with_hole;
+    if (holes.fitted())
+      return;
     const std::array<unsigned int, 2> n_cells{{cells[0], cells[dim > 1]}};
     std::vector<Hole>                 joints;
     for (const Hole &hole : holes.listed)
@@ -365,11 +383,88 @@ namespace PeriDeal
     parse_hole();
     holes.has_one = shape == Shape::plate_with_hole;
     parse_listed_holes();
+    parse_mesh();
     parse_fine_part();
+  }
+
+
+  namespace
+  {
+    /** Those of generate_from_name_and_arguments() that make quadrilaterals or hexahedra. */
+    const std::vector<std::string> &generator_names()
+    {
+      static const std::vector<std::string> names = {"channel_with_cylinder",
+                                                     "cheese",
+                                                     "concentric_hyper_shells",
+                                                     "cylinder",
+                                                     "cylinder_shell",
+                                                     "eccentric_hyper_shell",
+                                                     "enclosed_hyper_cube",
+                                                     "general_cell",
+                                                     "half_hyper_ball",
+                                                     "half_hyper_shell",
+                                                     "hyper_L",
+                                                     "hyper_ball",
+                                                     "hyper_ball_balanced",
+                                                     "hyper_cross",
+                                                     "hyper_cube",
+                                                     "hyper_cube_slit",
+                                                     "hyper_cube_with_cylindrical_hole",
+                                                     "hyper_rectangle",
+                                                     "hyper_shell",
+                                                     "moebius",
+                                                     "pipe_junction",
+                                                     "plate_with_a_hole",
+                                                     "quarter_hyper_ball",
+                                                     "quarter_hyper_shell",
+                                                     "simplex",
+                                                     "subdivided_cylinder",
+                                                     "subdivided_hyper_cube",
+                                                     "subdivided_hyper_rectangle",
+                                                     "torus",
+                                                     "truncated_cone"};
+      return names;
+    }
+  } // namespace
+
+
+  template <int dim>
+  void Domain<dim>::parse_mesh()
+  {
+    constexpr unsigned int most = 12;
     if (shape == Shape::mesh_file && files.mesh.empty() && !files.own_mesh)
       error("Mesh file", "is empty, but 'Shape' is 'mesh file'.");
     if (shape != Shape::mesh_file && !files.mesh.empty())
       error("Mesh file", "is given, but 'Shape' is '" + text("Shape") + "', not 'mesh file'.");
+    for (const std::string entry : {"Generator", "Generator arguments"})
+      refuse(shape != Shape::generator && !text(entry).empty(),
+             entry,
+             "is given, but 'Shape' is '" + text("Shape") + "', not 'generator'.");
+    if (shape == Shape::generator)
+      choice_of(files.generator, generator_names(), where("Generator"));
+    refuse(holes.fitted() && shape != Shape::plate_with_hole,
+           "Rims",
+           "is 'fitted', but there is no hole: give 'Holes', or 'Shape = plate with hole'.");
+    refuse(holes.fitted() && has_extra_layers(),
+           "Rims",
+           "is 'fitted', a mesh that 'Extra layers' cannot be added to. Use 'stairs'.");
+    refuse(coarsening.refinements > 0 && has_lattice(),
+           "Refinements",
+           "found " + text("Refinements") + ", but the body is a lattice, as fine as " +
+             (is_image() ? "'Cells per pixel'" : "'Cells'") + " says. Use 0" +
+             (shape == Shape::plate_with_hole ? ", or 'Rims = fitted'." : "."));
+    refuse(coarsening.refinements > most,
+           "Refinements",
+           "found " + text("Refinements") + ", needs at most " + std::to_string(most) + ".");
+  }
+
+
+  template <int dim>
+  std::string Domain<dim>::mesh_text() const
+  {
+    return shape == Shape::mesh_file ? files.mesh :
+           shape == Shape::generator ? "of " + files.generator :
+                                       "of the plate";
   }
 
 
@@ -500,7 +595,7 @@ namespace PeriDeal
   template <int dim>
   bool Domain<dim>::has_voids() const
   {
-    return shape == Shape::plate_with_hole || (image && image->has_voids());
+    return (shape == Shape::plate_with_hole && !holes.fitted()) || (image && image->has_voids());
   }
 
 

@@ -249,6 +249,19 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** A plate with fitted rims has the sides of a box, and its holes. */
+    MeshGroups::Numbers sides_of_plate(const unsigned int dim)
+    {
+      MeshGroups::Numbers sides = {{"hole", hole_boundary_id}};
+      for (unsigned int k = 0; k < 2 * dim; ++k)
+        sides.emplace(box_side_names()[k], k);
+      return sides;
+    }
+  } // namespace
+
+
   template <int dim>
   MeshGroups take_groups_of_mesh(Scene<dim> &scene)
   {
@@ -257,6 +270,8 @@ namespace PeriDeal
     BoundaryConditions<dim> &conditions = scene.boundary_conditions;
     conditions.physical_names.clear();
     conditions.parts.clear();
+    if (domain.holes.fitted())
+      conditions.physical_names = sides_of_plate(dim);
     if (domain.files.mesh.empty())
       return groups;
     groups                    = read_mesh_groups(domain.files.mesh,

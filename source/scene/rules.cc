@@ -429,11 +429,12 @@ namespace PeriDeal
       "'Models' has peridynamics, whose bonds need fine cells everywhere. Use 'coupled', or 0 here.");
     refuse(coupled && !coupling.exchanges(),
            "'Scheme' in section 'Coupling' is not 'exchange', the only one for graded meshes.");
-    refuse(scene.domain.coarsening.at_ends && scene.cracks.cracks.empty(),
+    refuse(scene.domain.coarsening.at_ends && !scene.domain.coarsening.at_corners &&
+             scene.cracks.cracks.empty(),
            "'Fine where' is 'crack ends', and section 'Cracks' has no crack.");
     refuse(
-      !scene.domain.coarsening.by_formula && (adaptive || coupling.is_near_cracks()) &&
-        scene.cracks.cracks.empty(),
+      !scene.domain.coarsening.by_formula && !scene.domain.coarsening.at_corners &&
+        (adaptive || coupling.is_near_cracks()) && scene.cracks.cracks.empty(),
       "section 'Cracks' has none for which cells would stay fine. Give a formula in 'Fine where'.");
   }
 
@@ -466,10 +467,14 @@ namespace PeriDeal
     template <int dim>
     std::string obstacle_to_choice(const Scene<dim> &scene)
     {
-      const bool moves = scene.deforms && !scene.elasticity.is_static();
-      if (scene.domain.shape != Shape::box || scene.domain.holes.has_one ||
-          !scene.domain.holes.listed.empty())
-        return "bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
+      const bool moves  = scene.deforms && !scene.elasticity.is_static();
+      const bool is_box = scene.domain.shape == Shape::box;
+      if (scene.domain.is_image())
+        return "images ('Shape' in section 'Domain')";
+      if (!is_box && scene.peridynamics.horizon > 0.)
+        return "a horizon that is a length in bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
+      if (!is_box && scene.cracks.change())
+        return "cracks that grow or change in bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
       if (moves && (!scene.cracks.cracks.empty() || scene.peridynamics.horizon > 0.))
         return "motion with cracks, or with a horizon that is a length";
       if (scene.material.law.kind != SolidLaw::linear)

@@ -27,8 +27,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  Attempts<dim>::Attempts(const Scene<dim> &scene, const LimitOfAttempts limit)
-    : scene(scene)
+  Attempts<dim>::Attempts(const BodyOfChoice<dim> &body, const LimitOfAttempts limit)
+    : body(body)
+    , scene(*body.scene)
     , box(cracked_box(scene))
     , points(box)
   {
@@ -41,24 +42,37 @@ namespace PeriDeal
         }
     for (unsigned int d = 0; d < dim; ++d)
       longest = std::max(longest, box.upper[d] - box.lower[d]);
-    family = family_for(scene, limit, !scene.cracks.cracks.empty() && on_faces(1.));
+    const bool cracked = !scene.cracks.cracks.empty();
+    family             = family_for(body, limit, cracked && !body.given && on_faces(1.));
+    if (!is_given() && family != Family::bonds)
+      planes = material_planes(scene);
+    for (unsigned int d = 0; planes && d < dim; ++d)
+      if (!planes_on_lines(d, with_points_on_planes(d, 2)))
+        planes.reset();
     if (family != Family::bonds)
-      needs = needs_of_formulas(scene);
+      needs = needs_of_formulas(scene, body.sides, planes.has_value());
     if (family == Family::whole)
       first = first_counts();
+    if (is_given())
+      return;
     first_fineness =
       fineness_of(family == Family::faces ? *on_faces(coarsest()) : counts(coarsest()));
   }
 
 
   template <int dim>
-  typename Attempts<dim>::Family Attempts<dim>::family_for(const Scene<dim>     &scene,
-                                                           const LimitOfAttempts limit,
-                                                           const bool            on_faces)
+  typename Attempts<dim>::Family Attempts<dim>::family_for(const BodyOfChoice<dim> &body,
+                                                           const LimitOfAttempts    limit,
+                                                           const bool               on_faces)
   {
+    const Scene<dim> &scene = *body.scene;
     if (limit == LimitOfAttempts::nonlocal)
       return Family::bonds;
-    if (scene.cracks.cracks.empty() || dim == 1)
+    const bool whole = scene.cracks.cracks.empty() || dim == 1;
+    if (body.given)
+      return whole || (body.cracks_on_faces && !scene.cracks.conduct()) ? Family::given :
+                                                                          Family::given_pairs;
+    if (whole)
       return Family::whole;
     if (on_faces && !scene.cracks.conduct() && !scene.cracks.change())
       return Family::faces;
@@ -96,7 +110,7 @@ namespace PeriDeal
     if (product(n) <= most)
       return n;
     // What varies across a thin body does not need short cells along it.
-    const std::vector<double> along    = needs_along_edges(scene);
+    const std::vector<double> along    = needs_along_edges(scene, body.sides);
     double                    shortest = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -135,11 +149,26 @@ namespace PeriDeal
   unsigned int Attempts<dim>::with_points_on_planes(const unsigned int direction,
                                                     const unsigned int n) const
   {
-    const unsigned int most = dim == 3 ? n + n / 2 + 4 : 2 * n + 8;
-    for (unsigned int k = n; k <= most; ++k)
-      if (corners_on_planes(points, direction, k))
-        return k;
+    const unsigned int most = (dim == 3 ? n + n / 2 + 4 : 2 * n + 8) + (planes ? 16 : 0);
+    for (const bool with_points : {true, false})
+      for (unsigned int k = n; k <= most; ++k)
+        if (planes_on_lines(direction, k) &&
+            (!with_points || corners_on_planes(points, direction, k)))
+          return k;
     return n;
+  }
+
+
+  template <int dim>
+  bool Attempts<dim>::planes_on_lines(const unsigned int direction, const unsigned int n) const
+  {
+    constexpr double slack = 1e-6; // of a cell
+    if (!planes)
+      return true;
+    const double lower = box.lower[direction], cell = (box.upper[direction] - lower) / n;
+    return std::all_of((*planes)[direction].begin(), (*planes)[direction].end(), [&](double x) {
+      return std::abs(std::remainder(x - lower, cell)) < slack * cell;
+    });
   }
 
 
@@ -156,7 +185,7 @@ namespace PeriDeal
         for (const bool with_points : {true, false})
           for (int k = 0; k <= wanted + most_to_fit<dim> && found == 0; ++k)
             for (const int n : {wanted - k, wanted + k})
-              if (found == 0 && n > 1 && corners_on_planes(box, d, n) &&
+              if (found == 0 && n > 1 && corners_on_planes(box, d, n) && planes_on_lines(d, n) &&
                   (!with_points || corners_on_planes(points, d, n)))
                 found = n;
         if (found == 0)
@@ -207,8 +236,39 @@ namespace PeriDeal
 
 
   template <int dim>
+  unsigned int Attempts<dim>::refinements(const double fineness) const
+  {
+    constexpr double most = 8.;
+    return std::lround(std::clamp(std::log2(fineness * body.given->spacing / longest), 0., most));
+  }
+
+
+  template <int dim>
+  void Attempts<dim>::refine_given(const double fineness, Attempt &attempt) const
+  {
+    constexpr unsigned int most     = 12;
+    const unsigned int     n        = refinements(fineness);
+    const bool             is_rough = body.given->has_corners || family == Family::given_pairs ||
+                          !scene.cracks.cracks.empty();
+    unsigned int levels = 0;
+    if (is_rough)
+      levels = halvings(std::exp2(n - refinements(coarsest())),
+                        family == Family::given_pairs || dim == 3 ? 2. : 3.);
+    levels           = std::min(levels, most - n);
+    attempt.fineness = std::exp2(n) * longest / body.given->spacing;
+    attempt.settings.insert(attempt.settings.end(), body.settings.begin(), body.settings.end());
+    attempt.settings.emplace_back("Domain/Refinements", std::to_string(n + levels));
+    attempt.settings.emplace_back("Domain/Coarsening", std::to_string(levels));
+    attempt.settings.emplace_back("Domain/Fine where",
+                                  family == Family::given && levels > 0 ? "corners" : "auto");
+  }
+
+
+  template <int dim>
   void Attempts<dim>::set_mesh(const double fineness, Attempt &attempt) const
   {
+    if (is_given())
+      return refine_given(fineness, attempt);
     unsigned int levels = 0;
     CellCounts   cells  = counts(fineness);
     if (family == Family::faces)
@@ -238,7 +298,8 @@ namespace PeriDeal
     const auto set = [&](const std::string &entry, const std::string &text) {
       attempt.settings.emplace_back(entry, text);
     };
-    set("Domain/Node spacing", "");
+    if (!body.given)
+      set("Domain/Node spacing", "");
     if (family == Family::bonds)
       {
         attempt.model = ModelKind::peridynamics;
@@ -252,12 +313,14 @@ namespace PeriDeal
         return attempt;
       }
     set_mesh(fineness, attempt);
-    const bool on_cells = family == Family::whole || family == Family::faces;
+    const bool on_cells = family == Family::whole || family == Family::faces ||
+                          family == Family::given;
+    const bool cut = family == Family::faces || family == Family::given;
     set("Cracks/Nodes on cracks", "left");
     set("Finite elements/Degree", on_cells ? "2" : "1");
     if (!scene.cracks.cracks.empty())
       {
-        set("Cracks/Mesh", family == Family::faces ? "faces" : "auto");
+        set("Cracks/Mesh", cut ? "faces" : "auto");
         set("Cracks/Bonds through tips", "auto");
       }
     if (family == Family::zone)
@@ -331,6 +394,10 @@ namespace PeriDeal
           return moves(scene) ? 2. : 3.; // steps as long as cells allow are of second order
         case Family::faces:
           return dim == 3 ? 2. : 3.;
+        case Family::given:
+          return body.given->is_round || moves(scene) || (dim == 3 && body.given->has_corners) ?
+                   2. :
+                   3.;
         case Family::zone:
           return 1.75; // sequences of turned cracks have that on average
         default:
@@ -344,7 +411,9 @@ namespace PeriDeal
   {
     // Where a crack's ends lie in their cells changes the error by factors of two, so that two
     // differences do not show an order.
-    return family == Family::pairs || family == Family::zone ? best_order() : 1.;
+    return family == Family::pairs || family == Family::given_pairs || family == Family::zone ?
+             best_order() :
+             1.;
   }
 
 
@@ -361,6 +430,7 @@ namespace PeriDeal
     switch (family)
       {
         case Family::pairs:
+        case Family::given_pairs:
         case Family::zone:
           return 2. * (dim - 1);
         case Family::bonds:
@@ -383,6 +453,14 @@ namespace PeriDeal
         case Family::faces:
           return "The cracks run along the axes: quadratic finite elements with the cracks on faces "
                  "of cells, fine at their ends.";
+        case Family::given:
+          return std::string("The body is no box: quadratic finite elements on ") +
+                 (body.settings.empty() ? "its mesh, whose cells are halved" :
+                                          "a mesh that follows the rims of its holes") +
+                 (body.given->has_corners || !scene.cracks.cracks.empty() ?
+                    ", fine at corners and ends of cracks." :
+                    ".");
+        case Family::given_pairs:
         case Family::pairs:
           return std::string(scene.cracks.change() ? "The cracks grow" :
                                                      "The cracks lie across cells") +
@@ -452,6 +530,8 @@ namespace PeriDeal
         return least;
       }
     double least = std::max(fewest_cells<dim>, 0.25 * needs.fineness);
+    if (is_given())
+      least = std::max(least, longest / body.given->spacing);
     if (family == Family::pairs || family == Family::zone)
       least = std::max(least, fineness_at_gaps(narrowest_gap(box, longest) / longest));
     return least;

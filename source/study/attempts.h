@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "body_of_choice.h"
 #include "formula_scan.h"
+#include "material_planes.h"
 
 namespace PeriDeal
 {
@@ -45,13 +47,17 @@ namespace PeriDeal
    * Points that are held or loaded are put on nodes where a lattice not much finer does it: a model
    * takes the nearest node.
    *
+   * A body that is no box has the mesh that it is given with, or one that follows the rims of its
+   * holes, whose cells are halved: quadratic elements, graded to the corners of the body and the
+   * ends of cracks on faces; with cracks across cells, in diffusion, linear ones with pairs of nodes.
+   *
    * For the nonlocal one of a horizon that is a length: peridynamics, with ever more nodes in it.
    */
   template <int dim>
   class Attempts
   {
   public:
-    Attempts(const Scene<dim> &scene, const LimitOfAttempts limit);
+    Attempts(const BodyOfChoice<dim> &body, const LimitOfAttempts limit);
 
     /**
      * The coarsest that is worth a try: formulas of the scene and gaps beside cracks are seen by
@@ -84,12 +90,24 @@ namespace PeriDeal
       faces,
       pairs,
       zone,
-      bonds
+      bonds,
+      given,      // a mesh without cracks across its cells
+      given_pairs // with such cracks
     };
 
-    static Family family_for(const Scene<dim>     &scene,
-                             const LimitOfAttempts limit,
-                             const bool            on_faces);
+    static Family family_for(const BodyOfChoice<dim> &body,
+                             const LimitOfAttempts    limit,
+                             const bool               on_faces);
+
+    /** The given mesh is that of the body. */
+    bool is_given() const
+    {
+      return family == Family::given || family == Family::given_pairs;
+    }
+
+    /** Halvings of the given mesh's cells. */
+    unsigned int refinements(const double fineness) const;
+    void         refine_given(const double fineness, Attempt &attempt) const;
 
     /**
      * Values are measured beside an end of a crack, where errors are as the root of the size of
@@ -99,16 +117,19 @@ namespace PeriDeal
 
     std::vector<double> first_counts() const;
     CellCounts          counts(const double fineness) const;
+    bool                planes_on_lines(const unsigned int direction, const unsigned int n) const;
     unsigned int with_points_on_planes(const unsigned int direction, const unsigned int n) const;
     void         set_mesh(const double fineness, Attempt &attempt) const;
     std::optional<CellCounts> on_faces(const double fineness) const;
     double                    fineness_of(const CellCounts &cells) const;
 
-    const Scene<dim>   &scene;
-    CrackedBox          box, points; // points: those of parts in place of cracks
-    double              longest = 0.;
-    NeedsOfFormulas     needs;
-    Family              family = Family::whole;
+    const BodyOfChoice<dim> &body;
+    const Scene<dim>        &scene;
+    CrackedBox               box, points; // points: those of parts in place of cracks
+    double                   longest = 0.;
+    NeedsOfFormulas          needs;
+    std::optional<std::vector<std::vector<double>>> planes; // of materials, to be on lines
+    Family                                          family = Family::whole;
     std::vector<double> first; // family `whole`: cells of its coarsest mesh, not rounded
     double              first_fineness = 0.; // of the coarsest mesh; 0 until it is known
   };

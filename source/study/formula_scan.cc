@@ -223,10 +223,10 @@ namespace PeriDeal
               side);
       }
 
-      void see(const MaterialProperty &property)
+      void see(const MaterialProperty &property, const Jumps jumps)
       {
         if (!property.is_constant())
-          see([&](const Point<dim> &p, double) { return property.value(p); }, false, Jumps::matter);
+          see([&](const Point<dim> &p, double) { return property.value(p); }, false, jumps);
       }
 
       /** Where the part is; a point is not seen by any mesh. */
@@ -249,10 +249,13 @@ namespace PeriDeal
     private:
       unsigned int side_of(const types::boundary_id id) const
       {
+        const Domain<dim> &domain    = scene.domain;
+        const bool         box_sides = domain.has_lattice() || domain.holes.fitted();
         for (const Part &part : scene.boundary_conditions.parts)
           if (part.id == id)
-            return part.kind == Part::of_side ? part.side : nowhere;
-        return id < 2 * dim ? id : nowhere;
+            return part.kind == Part::of_side && part.side < 2 * dim && box_sides ? part.side :
+                                                                                    nowhere;
+        return id < 2 * dim && box_sides ? id : nowhere;
       }
 
       bool meets_crack(const unsigned int side) const
@@ -318,16 +321,17 @@ namespace PeriDeal
 
 
     template <int dim>
-    void see_body(const Scene<dim> &scene, FormulaScan<dim> &scan)
+    void see_body(const Scene<dim> &scene, FormulaScan<dim> &scan, const bool materials_on_lines)
     {
       using Jumps                      = typename FormulaScan<dim>::Jumps;
       const InitialAndSource &in_body  = scene.initial_and_source;
       const Material         &material = scene.material;
+      const Jumps of_material          = materials_on_lines ? Jumps::do_not_matter : Jumps::matter;
       scan.see(in_body.source, Jumps::do_not_matter);
       if (scene.deforms ? !scene.elasticity.is_static() : !scene.time.steady)
-        scan.see(material.density);
+        scan.see(material.density, of_material);
       if (!scene.deforms && !scene.time.steady)
-        scan.see(material.heat_capacity);
+        scan.see(material.heat_capacity, of_material);
       if (!scene.time.steady)
         scan.see(in_body.initial_value, Jumps::matter);
       for (const Expression &formula : in_body.body_force)
@@ -336,14 +340,14 @@ namespace PeriDeal
         for (const Expression &formula : *list)
           scan.see(formula, Jumps::matter);
       if (!scene.deforms)
-        return scan.see(material.conductivity);
-      scan.see(material.thermal_expansion);
+        return scan.see(material.conductivity, of_material);
+      scan.see(material.thermal_expansion, of_material);
       scan.see(scene.elasticity.temperature_change, Jumps::matter);
       if (!material.uniform_moduli())
         for (const auto modulus : {&Moduli::bulk, &Moduli::shear})
           scan.see([&](const Point<dim> &p, double) { return material.moduli(p).*modulus; },
                    false,
-                   Jumps::matter);
+                   of_material);
     }
 
 
@@ -372,11 +376,13 @@ namespace PeriDeal
 
 
     template <int dim>
-    FormulaScan<dim> scan_of(const Scene<dim> &scene, const bool by_direction)
+    FormulaScan<dim> scan_of(const Scene<dim> &scene,
+                             const bool        by_direction,
+                             const bool        materials_on_lines)
     {
       const DeferredFormulaErrors ignored; // they are told where the values are used
       FormulaScan<dim>            scan(scene, by_direction);
-      see_body(scene, scan);
+      see_body(scene, scan, materials_on_lines);
       see_conditions(scene, scan);
       return scan;
     }
@@ -384,21 +390,23 @@ namespace PeriDeal
 
 
   template <int dim>
-  NeedsOfFormulas needs_of_formulas(const Scene<dim> &scene)
+  NeedsOfFormulas needs_of_formulas(const Scene<dim>      &scene,
+                                    const SidePoints<dim> &sides,
+                                    const bool             materials_on_lines)
   {
-    NeedsOfFormulas needs = scan_of(scene, false).needs();
-    needs.fineness        = std::max(needs.fineness, fineness_of_first_layer(scene));
-    needs.jumps           = needs.jumps || given_values_disagree(scene);
+    NeedsOfFormulas needs = scan_of(scene, false, materials_on_lines).needs();
+    needs.fineness        = std::max(needs.fineness, fineness_of_first_layer(scene, sides));
+    needs.jumps           = needs.jumps || given_values_disagree(scene, sides);
     return needs;
   }
 
 
   template <int dim>
-  std::vector<double> needs_along_edges(const Scene<dim> &scene)
+  std::vector<double> needs_along_edges(const Scene<dim> &scene, const SidePoints<dim> &sides)
   {
-    std::vector<double> along = scan_of(scene, true).along_edges();
+    std::vector<double> along = scan_of(scene, true, false).along_edges();
     for (double &fineness : along)
-      fineness = std::max(fineness, fineness_of_first_layer(scene));
+      fineness = std::max(fineness, fineness_of_first_layer(scene, sides));
     return along;
   }
 

@@ -7,6 +7,8 @@
 
 #include <vector>
 
+#include "given_body.h"
+
 namespace PeriDeal
 {
   /** What a mesh has to have for the formulas of a scene. */
@@ -18,7 +20,7 @@ namespace PeriDeal
 
 
   /**
-   * How many cells along the longest edge of the box of a scene its formulas need: the fewest, of
+   * How many cells along the longest edge of the box around a body its formulas need: the fewest, of
    * powers of two, on which the linear interpolant of each is right to a fifth of its variation in
    * the mean square, cells being as long as wide. Sources, materials, forces and initial fields in
    * the body, what is given on its sides, and the parts that it is given on; formulas of time are
@@ -30,9 +32,12 @@ namespace PeriDeal
    * and parts of sides where values are given. Of a function that jumps the interpolant on the
    * finest raster is wrong by more than half of what it is on one twice as coarse. Values of sides
    * that disagree where these meet are jumps, too. Not collective.
+   * @param materials_on_lines cells are of one material each, so that it may jump between them
    */
   template <int dim>
-  NeedsOfFormulas needs_of_formulas(const Scene<dim> &scene);
+  NeedsOfFormulas needs_of_formulas(const Scene<dim>      &scene,
+                                    const SidePoints<dim> &sides,
+                                    const bool             materials_on_lines);
 
   /**
    * The fineness of those needs with cells that are short in one direction alone, for each
@@ -40,5 +45,5 @@ namespace PeriDeal
    * Takes some times as long. Not collective.
    */
   template <int dim>
-  std::vector<double> needs_along_edges(const Scene<dim> &scene);
+  std::vector<double> needs_along_edges(const Scene<dim> &scene, const SidePoints<dim> &sides);
 } // namespace PeriDeal

@@ -5,16 +5,18 @@
 
 #include <perideal/scene/scene.h>
 
+#include "given_body.h"
+
 namespace PeriDeal
 {
   /**
-   * Whether two sides of a box that meet have other values where they meet, by more than 1/1000 of
+   * Whether two sides that meet have other values where they meet, by more than 1/1000 of
    * all that is given on sides: near such a corner or edge no mesh has the solution, and errors get
    * smaller only as cells do. Values that change with time are looked at four times. Not
    * collective.
    */
   template <int dim>
-  bool given_values_disagree(const Scene<dim> &scene);
+  bool given_values_disagree(const Scene<dim> &scene, const SidePoints<dim> &sides);
 
   /**
    * How many cells along the longest edge a diffusion layer needs that grows from the sides of a
@@ -23,5 +25,5 @@ namespace PeriDeal
    * on all sides that have a condition. Not collective.
    */
   template <int dim>
-  double fineness_of_first_layer(const Scene<dim> &scene);
+  double fineness_of_first_layer(const Scene<dim> &scene, const SidePoints<dim> &sides);
 } // namespace PeriDeal

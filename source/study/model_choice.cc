@@ -36,8 +36,8 @@ namespace PeriDeal
       std::string text = to_string(attempt.model);
       for (const auto &[entry, value] : attempt.settings)
         for (const char *const shown :
-             {"Domain/Cells", "Domain/Coarsening", "Finite elements/Degree"})
-          if (entry == shown && !(entry == "Domain/Coarsening" && value == "0"))
+             {"Domain/Cells", "Domain/Refinements", "Domain/Coarsening", "Finite elements/Degree"})
+          if (entry == shown && !(entry != "Domain/Cells" && value == "0"))
             text += ", " + entry.substr(entry.find('/') + 1) + " = " + value;
       return text;
     }
@@ -57,18 +57,18 @@ namespace PeriDeal
     class Choice
     {
     public:
-      Choice(const Scene<dim> &scene,
-             const SceneText  &text,
-             const MPI_Comm    communicator,
-             const bool        quiet)
-        : scene(scene)
+      Choice(const BodyOfChoice<dim> &body,
+             const SceneText         &text,
+             const MPI_Comm           communicator,
+             const bool               quiet)
+        : scene(*body.scene)
         , text(text)
         , communicator(communicator)
         , quiet(quiet)
         , progress(communicator, quiet)
         , measure(scene)
-        , classical(scene, text, communicator, measure, LimitOfAttempts::classical)
-        , nonlocal(scene, text, communicator, measure, LimitOfAttempts::nonlocal)
+        , classical(body, text, communicator, measure, LimitOfAttempts::classical)
+        , nonlocal(body, text, communicator, measure, LimitOfAttempts::nonlocal)
         , is_nonlocal(scene.peridynamics.horizon > 0.)
         , moves(scene.deforms && !scene.elasticity.is_static()) // with steps as long as cells allow
         , start(Clock::now())
@@ -425,7 +425,8 @@ namespace PeriDeal
     AssertThrow(mode != RunMode::resume,
                 UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
     refuse_choice(scene);
-    Choice<dim>(scene, text, communicator, quiet).run(mode);
+    const BodyOfChoice<dim> body(scene, communicator);
+    Choice<dim>(body, text, communicator, quiet).run(mode);
   }
 
 
@@ -438,7 +439,8 @@ namespace PeriDeal
     const Progress progress(communicator, quiet);
     refuse_choice(scene);
     const bool               is_nonlocal = scene.peridynamics.horizon > 0.;
-    const Attempts<dim>      attempts(scene,
+    const BodyOfChoice<dim>  body(scene, communicator);
+    const Attempts<dim>      attempts(body,
                                  is_nonlocal ? LimitOfAttempts::nonlocal :
                                                     LimitOfAttempts::classical);
     const MeasuredError<dim> measure(scene);

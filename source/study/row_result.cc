@@ -5,13 +5,12 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/memory.h>
 #include <perideal/base/process_end.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/result_folder.h>
 #include <perideal/scene/lists.h>
 #include <perideal/study/model_choice.h>
-
-#include <malloc.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -69,19 +68,6 @@ namespace PeriDeal
       results["totals"] = read_table(folder / "totals.csv");
       results["probes"] = read_table(folder / "probes.csv");
       return results;
-    }
-
-
-    /**
-     * The size of the process at its peak starts anew, so that it is that of this row. Where the
-     * system has no such thing, it does not.
-     */
-    void forget_peak_memory()
-    {
-#ifdef __GLIBC__
-      malloc_trim(0);
-#endif
-      std::ofstream("/proc/self/clear_refs") << "5";
     }
 
 

@@ -20,16 +20,16 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  Search<dim>::Search(const Scene<dim>         &scene,
+  Search<dim>::Search(const BodyOfChoice<dim>  &body,
                       const SceneText          &text,
                       const MPI_Comm            communicator,
                       const MeasuredError<dim> &measure,
                       const LimitOfAttempts     limit)
-    : scene(scene)
+    : scene(*body.scene)
     , text(text)
     , communicator(communicator)
     , measure(measure)
-    , family(scene, limit)
+    , family(body, limit)
   {}
 
 

@@ -40,7 +40,7 @@ namespace PeriDeal
   class Search
   {
   public:
-    Search(const Scene<dim>         &scene,
+    Search(const BodyOfChoice<dim>  &body,
            const SceneText          &text,
            const MPI_Comm            communicator,
            const MeasuredError<dim> &measure,

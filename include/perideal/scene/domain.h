@@ -18,15 +18,16 @@
 namespace PeriDeal
 {
   /**
-   * The body: a box of equal cells, such a box with a hole, a mesh from a file, or the pixels of an
-   * image.
+   * The body: a box of equal cells, such a box with a hole, a mesh from a file, the pixels of an
+   * image, or a mesh of deal.II's generators.
    */
   enum class Shape
   {
     box,
     plate_with_hole,
     mesh_file,
-    image
+    image,
+    generator
   };
 
   /** What happens to parts of an image that no side holds. */
@@ -77,8 +78,10 @@ namespace PeriDeal
     {
       unsigned int times;
       Expression   fine;               // they stay fine where it is greater than 0
-      bool         by_formula = false; // else, unless at the ends, in the zone of `Coupling`
+      bool         by_formula = false; // else, unless at ends or corners, in the zone of `Coupling`
       bool         at_ends    = false; // at the ends of cracks, in 3D their edges
+      bool         at_corners = false; // at those of the body, too, that its mesh has
+      unsigned int refinements = 0;    // how often cells that are no lattice's are halved before
     };
     Coarsening coarsening;
 
@@ -109,17 +112,21 @@ namespace PeriDeal
     struct Files
     {
       std::string mesh, image;
-      bool        own_mesh = false; // of a program, which asks for no file
+      std::string generator, arguments; // of deal.II, in place of a mesh file
+      bool        own_mesh = false;     // of a program, which asks for no file
       std::string folder;
       MPI_Comm    communicator = MPI_COMM_SELF;
     };
     Files files;
 
-    /** Nodes and cells lie on a lattice: any body but one from a mesh file. */
+    /** Nodes and cells lie on a lattice, not on a mesh with places of its own. */
     bool has_lattice() const
     {
-      return shape != Shape::mesh_file;
+      return shape != Shape::mesh_file && shape != Shape::generator && !holes.fitted();
     }
+
+    /** The mesh, where there is no lattice, for messages. */
+    std::string mesh_text() const;
 
     bool is_box() const
     {
@@ -187,6 +194,7 @@ namespace PeriDeal
     void require_countable(const std::string &entry) const;
 
     void parse_fine_part();
+    void parse_mesh();
 
     void parse_hole();
     void parse_listed_holes();

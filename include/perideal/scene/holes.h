@@ -79,6 +79,13 @@ namespace PeriDeal
     square
   };
 
+  /** Of holes: cells of a lattice are missing, or the mesh follows the rims. */
+  enum class Rims
+  {
+    stairs,
+    fitted
+  };
+
   /** Of a plate: those of the list `Holes`, and the one that has entries of its own. */
   template <int dim>
   struct Holes
@@ -89,6 +96,15 @@ namespace PeriDeal
     HoleShape          shape  = HoleShape::circle;
     double             angle  = 0.; // degrees
     std::vector<Hole>  listed;
+    Rims               rims = Rims::stairs;
+
+    bool fitted() const
+    {
+      return rims == Rims::fitted;
+    }
+
+    /** All of them, without joints. */
+    std::vector<Hole> all() const;
 
     /** In three dimensions they are bores along z. */
     bool contains(const dealii::Point<dim> &p) const;
@@ -109,10 +125,6 @@ namespace PeriDeal
     std::vector<double> rim_over_faces(const std::vector<RimFace> &faces,
                                        const dealii::Point<2>     &lower,
                                        const dealii::Point<2>     &upper) const;
-
-  private:
-    /** All of them, without joints. */
-    std::vector<Hole> all() const;
   };
 
   /**

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_in.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold_lib.h>
+
+#include <perideal/base/instantiate.h>
+#include <perideal/base/text_file.h>
+#include <perideal/base/user_error.h>
+#include <perideal/mesh/fitted_plate.h>
+#include <perideal/mesh/given_mesh.h>
+#include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/msh_file.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  void GivenMesh<dim>::mark(Triangulation<dim> &mesh) const
+  {
+    for (const auto &[id, manifold] : manifolds)
+      mesh.set_manifold(id, *manifold);
+    for (const auto &cell : mesh.cell_iterators_on_level(0))
+      {
+        const auto index = static_cast<unsigned int>(cell->index());
+        if (const auto of_cell = cells.find(index); of_cell != cells.end())
+          cell->set_manifold_id(of_cell->second);
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (const auto round = faces.find({index, f}); round != faces.end())
+              cell->face(f)->set_all_manifold_ids(round->second);
+            if (!cell->face(f)->at_boundary())
+              continue;
+            const auto side = sides.find({index, f});
+            cell->face(f)->set_boundary_id(side != sides.end() ? side->second : crack_boundary_id);
+          }
+      }
+  }
+
+
+  namespace
+  {
+    /** A mesh on one process, as lists. */
+    template <int dim>
+    GivenMesh<dim> described(const Triangulation<dim> &mesh)
+    {
+      GivenMesh<dim> given;
+      SubCellData    faces;
+      std::tie(given.coarse.vertices, given.coarse.cells, faces) =
+        GridTools::get_coarse_mesh_description(mesh);
+      for (const types::manifold_id id : mesh.get_manifold_ids())
+        if (id != numbers::flat_manifold_id)
+          given.manifolds.emplace(id, mesh.get_manifold(id).clone());
+      for (const auto &cell : mesh.active_cell_iterators())
+        {
+          const unsigned int index = cell->active_cell_index();
+          if (cell->manifold_id() != numbers::flat_manifold_id)
+            given.cells[index] = cell->manifold_id();
+          for (const unsigned int f : cell->face_indices())
+            {
+              if (cell->face(f)->at_boundary())
+                given.sides[{index, f}] = cell->face(f)->boundary_id();
+              if (cell->face(f)->manifold_id() != numbers::flat_manifold_id)
+                given.faces[{index, f}] = cell->face(f)->manifold_id();
+            }
+        }
+      return given;
+    }
+
+
+    /** The text of a mesh file, once it is known that deal.II can read it. Collective. */
+    template <int dim>
+    std::string checked_mesh_file(const std::string &file_name,
+                                  const std::string &scene_folder,
+                                  const MPI_Comm     communicator)
+    {
+      std::string text, message;
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        try
+          {
+            text = text_of_msh(read_msh(file_name, scene_folder, dim), dim);
+          }
+        catch (const UserError &error)
+          {
+            message = error.message();
+          }
+      throw_on_all_if_any(communicator, message);
+      share_text(text, communicator);
+      return text;
+    }
+
+
+    template <int dim>
+    GivenMesh<dim> mesh_of_file(const std::string &file_name,
+                                const std::string &scene_folder,
+                                const MPI_Comm     communicator)
+    {
+      std::istringstream file(checked_mesh_file<dim>(file_name, scene_folder, communicator));
+      Triangulation<dim> mesh;
+      try
+        {
+          GridIn<dim> reader(mesh);
+          reader.read_msh(file);
+        }
+      catch (const std::exception &)
+        {
+          AssertThrow(false,
+                      UserError("'Mesh file' in section 'Domain': '" + file_name +
+                                "' is not a mesh of dimension " + std::to_string(dim) +
+                                " that deal.II can use, or it is broken."));
+        }
+      AssertThrow(mesh.n_active_cells() > 0 && mesh.all_reference_cells_are_hyper_cube(),
+                  ExcInternalError());
+      return described(mesh);
+    }
+
+
+    /** What deal.II says in an exception, in one line. */
+    std::string reason_of(const std::exception &error)
+    {
+      std::istringstream lines(error.what());
+      std::string        line, reason;
+      bool               follows = false;
+      while (std::getline(lines, line))
+        if (line.find("Additional information") != std::string::npos)
+          follows = true;
+        else if (line.find("Stacktrace") != std::string::npos || line.find("-----") == 0)
+          follows = false;
+        else if (follows && line.find_first_not_of(' ') != std::string::npos)
+          reason += (reason.empty() ? "" : " ") + line.substr(line.find_first_not_of(' '));
+      return reason;
+    }
+
+
+    template <int dim>
+    GivenMesh<dim> mesh_of_generator(const Domain<dim> &domain)
+    {
+      Triangulation<dim> mesh;
+      try
+        {
+          GridGenerator::generate_from_name_and_arguments(mesh,
+                                                          domain.files.generator,
+                                                          domain.files.arguments);
+        }
+      catch (const std::exception &error)
+        {
+          const std::string reason = reason_of(error);
+          domain.refuse(true,
+                        "Generator arguments",
+                        "'" + domain.files.arguments + "': deal.II makes no mesh of dimension " +
+                          std::to_string(dim) + " by '" + domain.files.generator + "' from them" +
+                          (reason.empty() ? "." : ": " + reason));
+        }
+      domain.refuse(mesh.n_active_cells() == 0 || !mesh.all_reference_cells_are_hyper_cube(),
+                    "Generator",
+                    "'" + domain.files.generator +
+                      "' makes other cells than quadrilaterals and hexahedra.");
+      if (mesh.n_levels() == 1)
+        return described(mesh);
+      GivenMesh<dim>     given; // some are refined once
+      Triangulation<dim> flat;
+      GridGenerator::flatten_triangulation(mesh, flat);
+      for (const types::manifold_id id : mesh.get_manifold_ids())
+        if (id != numbers::flat_manifold_id)
+          flat.set_manifold(id, mesh.get_manifold(id));
+      return described(flat);
+    }
+
+
+    template <int dim>
+    void set_sides_of_plate(const Domain<dim> &domain, Triangulation<dim> &mesh)
+    {
+      for (const auto &cell : mesh.active_cell_iterators())
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (!cell->face(f)->at_boundary())
+              continue;
+            types::boundary_id id     = hole_boundary_id;
+            const Point<dim>   center = cell->face(f)->center();
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double slack = 1e-8 * (domain.upper[d] - domain.lower[d]);
+                if (std::abs(center[d] - domain.lower[d]) < slack)
+                  id = 2 * d;
+                else if (std::abs(center[d] - domain.upper[d]) < slack)
+                  id = 2 * d + 1;
+              }
+            cell->face(f)->set_boundary_id(id);
+          }
+    }
+
+
+    /** The number of the circle that holds all vertices of a face, from 0, or -1. */
+    template <int dim, typename Face>
+    int circle_of(const std::vector<Hole> &holes, const Face &face)
+    {
+      for (unsigned int k = 0; k < holes.size(); ++k)
+        {
+          bool on_rim = holes[k].corners.empty();
+          for (unsigned int v = 0; on_rim && v < GeometryInfo<dim>::vertices_per_face; ++v)
+            {
+              const Point<dim> p = face->vertex(v);
+              on_rim = std::abs(holes[k].distance(Point<2>(p[0], p[1]))) < 1e-9 * holes[k].radius;
+            }
+          if (on_rim)
+            return k;
+        }
+      return -1;
+    }
+
+
+    /** The rims of circles stay round as cells are halved. */
+    template <int dim>
+    void make_rims_round(const std::vector<Hole> &holes, Triangulation<dim> &mesh)
+    {
+      std::vector<bool> used(holes.size(), false);
+      for (const auto &cell : mesh.active_cell_iterators())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == hole_boundary_id)
+            if (const int k = circle_of<dim>(holes, cell->face(f)); k >= 0)
+              {
+                cell->face(f)->set_all_manifold_ids(k + 1);
+                used[k] = true;
+              }
+      for (unsigned int k = 0; k < holes.size(); ++k)
+        if (used[k])
+          {
+            if constexpr (dim == 2)
+              mesh.set_manifold(k + 1, SphericalManifold<2>(holes[k].center));
+            else
+              {
+                const Point<dim> center(holes[k].center[0], holes[k].center[1], 0.);
+                mesh.set_manifold(k + 1,
+                                  CylindricalManifold<dim>(Point<dim>::unit_vector(2), center));
+              }
+          }
+    }
+
+
+    Triangulation<2> mesh_of(const FittedPlate &plate)
+    {
+      std::vector<CellData<2>> cells;
+      for (const auto &corners : plate.cells)
+        {
+          CellData<2> cell;
+          cell.vertices = {corners[0], corners[1], corners[3], corners[2]};
+          cells.push_back(cell);
+        }
+      GridTools::consistently_order_cells(cells);
+      Triangulation<2> mesh;
+      mesh.create_triangulation(plate.vertices, cells, SubCellData());
+      return mesh;
+    }
+
+
+    template <int dim>
+    GivenMesh<dim> mesh_of_plate(const Domain<dim> &domain)
+    {
+      if constexpr (dim > 1)
+        {
+          const std::vector<Hole> holes = domain.holes.all();
+          Triangulation<2>        plane = mesh_of(fitted_plate({domain.lower[0], domain.lower[1]},
+                                                        {domain.upper[0], domain.upper[1]},
+                                                        {{domain.cells[0], domain.cells[1]}},
+                                                        holes,
+                                                        domain.where("Rims")));
+          Triangulation<dim>      mesh;
+          if constexpr (dim == 2)
+            mesh.copy_triangulation(plane);
+          else
+            {
+              GridGenerator::extrude_triangulation(plane,
+                                                   domain.cells[2] + 1,
+                                                   domain.upper[2] - domain.lower[2],
+                                                   mesh);
+              Tensor<1, dim> up;
+              up[2] = domain.lower[2];
+              GridTools::shift(up, mesh);
+            }
+          set_sides_of_plate(domain, mesh);
+          make_rims_round(holes, mesh);
+          return described(mesh);
+        }
+      else
+        {
+          AssertThrow(false, ExcInternalError());
+          return {};
+        }
+    }
+  } // namespace
+
+
+  template <int dim>
+  GivenMesh<dim> given_mesh(const Domain<dim> &domain, const MPI_Comm communicator)
+  {
+    if (domain.shape == Shape::mesh_file)
+      return mesh_of_file<dim>(domain.files.mesh, domain.files.folder, communicator);
+    if (domain.shape == Shape::generator)
+      return mesh_of_generator(domain);
+    return mesh_of_plate(domain);
+  }
+
+
+#define PERIDEAL_TEMPLATES(dim)   \
+  template struct GivenMesh<dim>; \
+  template GivenMesh<dim> given_mesh(const Domain<dim> &, const MPI_Comm);
+  PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
+#undef PERIDEAL_TEMPLATES
+} // namespace PeriDeal

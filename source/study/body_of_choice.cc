@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "body_of_choice.h"
+
+#include <perideal/base/instantiate.h>
+#include <perideal/base/user_error.h>
+#include <perideal/mesh/fitted_plate.h>
+#include <perideal/mesh/given_mesh.h>
+#include <perideal/study/cracked_box.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A polygon whose edges run along the axes. */
+    bool is_upright(const Hole &hole)
+    {
+      const std::size_t n = hole.corners.size();
+      for (std::size_t k = 0; k < n; ++k)
+        {
+          const Point<2> &a = hole.corners[k], &b = hole.corners[(k + 1) % n];
+          if (std::min(std::abs(a[0] - b[0]), std::abs(a[1] - b[1])) > 1e-9 * a.distance(b))
+            return false;
+        }
+      return n > 0;
+    }
+
+
+    /** What should lie on lines of the lattice: corners of upright holes, cracks along the axes. */
+    template <int dim>
+    CrackedBox wanted_on_lines(const Scene<dim> &scene)
+    {
+      CrackedBox box = cracked_box(scene);
+      if (!along_axes(box))
+        box.cracks.clear();
+      for (const Hole &hole : scene.domain.holes.all())
+        if (is_upright(hole))
+          {
+            box.cracks.emplace_back();
+            for (const Point<2> &corner : hole.corners)
+              {
+                box.cracks.back().push_back({corner[0], corner[1]});
+                if (dim == 3)
+                  box.cracks.back().back().push_back(box.lower[2]);
+              }
+          }
+      return box;
+    }
+
+
+    /** The number of lines nearest to the wanted one that has all planes, if there is one near. */
+    unsigned int fitting_count(const CrackedBox &box, const unsigned int d, const unsigned int n)
+    {
+      for (unsigned int k = n; k <= 2 * n + 4; ++k)
+        if (corners_on_planes(box, d, k))
+          return k;
+      return n;
+    }
+
+
+    /** Cells of the coarsest lattice from which a mesh can be made that follows all rims. */
+    template <int dim>
+    CellCounts cells_of_fitted_plate(const Scene<dim> &scene)
+    {
+      constexpr unsigned int  most    = 64;
+      const Domain<dim>      &domain  = scene.domain;
+      const CrackedBox        wanted  = wanted_on_lines(scene);
+      const std::vector<Hole> holes   = domain.holes.all();
+      double                  longest = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        longest = std::max(longest, domain.upper[d] - domain.lower[d]);
+      std::string reason;
+      for (unsigned int n = 3; n <= most; ++n)
+        {
+          CellCounts cells;
+          for (unsigned int d = 0; d < dim; ++d)
+            cells.push_back(fitting_count(
+              wanted,
+              d,
+              std::max(2l, std::lround(n * (domain.upper[d] - domain.lower[d]) / longest))));
+          try
+            {
+              fitted_plate({domain.lower[0], domain.lower[1]},
+                           {domain.upper[0], domain.upper[1]},
+                           {{cells[0], cells[1]}},
+                           holes,
+                           domain.where("Rims"));
+              return cells;
+            }
+          catch (const UserError &error)
+            {
+              reason = error.message();
+            }
+        }
+      domain.refuse(
+        true,
+        "Holes",
+        "cannot be followed by the cells of a mesh, which 'Models = auto' needs: holes with round or "
+        "oblique rims have to lie apart from each other and from the sides (" +
+          reason + ").");
+      return {};
+    }
+
+
+    template <int dim>
+    std::vector<Setting> settings_of_body(const Scene<dim> &scene)
+    {
+      if constexpr (dim > 1)
+        if (scene.domain.shape == Shape::plate_with_hole)
+          return {{"Domain/Node spacing", ""},
+                  {"Domain/Cells", to_text(cells_of_fitted_plate(scene))},
+                  {"Domain/Rims", "fitted"}};
+      return {};
+    }
+
+
+    /** Whether all cracks lie on faces of the cells, so that the mesh can be cut there. */
+    template <int dim>
+    bool all_on_faces(const Scene<dim> &scene, const MPI_Comm communicator)
+    {
+      const CoarseMesh<dim> coarse = given_mesh(scene.domain, communicator).coarse;
+      for (const CrackGeometry<dim> &crack : make_crack_geometries(scene.cracks.pieces(0.)))
+        if (!lies_on_faces(coarse, crack))
+          return false;
+      return true;
+    }
+  } // namespace
+
+
+  template <int dim>
+  BodyOfChoice<dim>::BodyOfChoice(const Scene<dim> &original, const MPI_Comm communicator)
+    : settings(settings_of_body(original))
+  {
+    std::vector<Setting> once = settings;
+    if (!settings.empty())
+      once.emplace_back("Domain/Refinements", "0");
+    scene = scene_variant(original, once);
+    if (scene->domain.has_lattice())
+      {
+        sides = sides_of_box(*scene);
+        return;
+      }
+    given = std::make_unique<GivenBody<dim>>(*scene, communicator);
+    sides = given->sides;
+    std::tie(scene->domain.lower, scene->domain.upper) = given->box.get_boundary_points();
+    cracks_on_faces = !scene->cracks.cracks.empty() && !scene->cracks.change() &&
+                      all_on_faces(*scene, communicator);
+  }
+
+
+  template struct BodyOfChoice<1>;
+  template struct BodyOfChoice<2>;
+  template struct BodyOfChoice<3>;
+} // namespace PeriDeal
