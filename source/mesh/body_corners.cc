@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -117,11 +118,43 @@ namespace PeriDeal
     }
 
 
+    /** Whether two of the values that sides give at a point differ, at the start or the end. */
     template <int dim>
-    bool is_rough(const BoundaryConditions<dim> &given, const Seen &seen)
+    bool values_disagree(const Scene<dim> &scene, const Seen &seen, const Point<dim> &p)
     {
-      const double     half = std::acos(-1.);
-      constexpr double wide = 1.26, blunt = 0.6; // in half turns
+      constexpr double            small = 1e-3;
+      const DeferredFormulaErrors ignored; // they are told where the values are used
+      const auto                 &given = scene.boundary_conditions;
+      for (const double t : {0., scene.time.steady ? 0. : scene.time.end_time})
+        for (unsigned int c = 0; c < dim; ++c)
+          {
+            double least = std::numeric_limits<double>::max(), most = -least;
+            for (const types::boundary_id side : seen.sides)
+              {
+                const Expression *value = nullptr;
+                if (const auto *const fixed = find_condition(given.dirichlet, side))
+                  value = &fixed->value;
+                else if (const auto *const moved = find_condition(given.displacement, side))
+                  value = moved->values[c] ? &*moved->values[c] : nullptr;
+                if (value != nullptr)
+                  {
+                    least = std::min(least, value->value(p, t));
+                    most  = std::max(most, value->value(p, t));
+                  }
+              }
+            if (most - least > small * std::max(std::abs(least), std::abs(most)))
+              return true;
+          }
+      return false;
+    }
+
+
+    template <int dim>
+    bool is_rough(const Scene<dim> &scene, const Seen &seen, const Point<dim> &p)
+    {
+      const BoundaryConditions<dim> &given = scene.boundary_conditions;
+      const double                   half  = std::acos(-1.);
+      constexpr double               wide = 1.26, blunt = 0.6; // in half turns
       if (seen.sides.empty())
         return false;
       const bool is_round = seen.manifolds[0] != numbers::flat_manifold_id &&
@@ -136,7 +169,8 @@ namespace PeriDeal
           some = some || holds(given, side);
           all  = all && holds(given, side);
         }
-      return some && !all && seen.angle > blunt * half;
+      return (some && !all && seen.angle > blunt * half) ||
+             (some && values_disagree(scene, seen, p));
     }
   } // namespace
 
@@ -157,12 +191,17 @@ namespace PeriDeal
                 add_face<dim>(cell, f, corners);
           }
         for (const auto &[key, seen] : corners)
-          if (is_rough(scene.boundary_conditions, seen))
-            {
-              rough.emplace_back();
-              for (const unsigned int v : key)
-                rough.back().push_back(mesh.get_vertices()[v]);
-            }
+          {
+            std::vector<Point<dim>> ends;
+            Point<dim>              middle;
+            for (const unsigned int v : key)
+              {
+                ends.push_back(mesh.get_vertices()[v]);
+                middle += 1. / key.size() * Tensor<1, dim>(ends.back());
+              }
+            if (is_rough(scene, seen, middle))
+              rough.push_back(ends);
+          }
       }
     return rough;
   }

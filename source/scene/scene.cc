@@ -103,7 +103,10 @@ namespace PeriDeal
         if (!scene.domain.contains(p))
           entry_error(scene.output.where(entry),
                       "the point " + point_text(p) + " lies outside the body.");
-        if (entry == "Probes" && !is_in_some_cell(scene.domain, p))
+        // A mesh that is chosen follows the rims.
+        const bool is_inside = scene.general.automatic ? !scene.domain.holes.contains(p) :
+                                                         is_in_some_cell(scene.domain, p);
+        if (entry == "Probes" && !is_inside)
           entry_error(scene.output.where(entry),
                       "the point " + point_text(p) +
                         " lies in a hole. Move it into the body, or leave it out.");

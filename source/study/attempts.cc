@@ -50,7 +50,7 @@ namespace PeriDeal
       if (!planes_on_lines(d, with_points_on_planes(d, 2)))
         planes.reset();
     if (family != Family::bonds)
-      needs = needs_of_formulas(scene, body.sides, planes.has_value());
+      needs = needs_of_formulas(body, planes.has_value());
     if (family == Family::whole)
       first = first_counts();
     if (is_given())
@@ -110,7 +110,7 @@ namespace PeriDeal
     if (product(n) <= most)
       return n;
     // What varies across a thin body does not need short cells along it.
-    const std::vector<double> along    = needs_along_edges(scene, body.sides);
+    const std::vector<double> along    = needs_along_edges(body);
     double                    shortest = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -238,7 +238,7 @@ namespace PeriDeal
   template <int dim>
   unsigned int Attempts<dim>::refinements(const double fineness) const
   {
-    constexpr double most = 8.;
+    constexpr double most = 11.;
     return std::lround(std::clamp(std::log2(fineness * body.given->spacing / longest), 0., most));
   }
 
@@ -384,7 +384,7 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::best_order() const
   {
-    if (needs.jumps)
+    if (needs.jumps || (needs.disagree && family != Family::given))
       return 1.;
     if (probes_at_ends())
       return family == Family::faces && dim < 3 ? 1.5 : 1.;

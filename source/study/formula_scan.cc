@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "given_values.h"
@@ -119,7 +120,8 @@ namespace PeriDeal
         for (std::size_t k = 0; k < values.size() && error <= enough; ++k)
           {
             const double left = values[k] - interpolant(k, strides);
-            error += left * left;
+            if (!std::isnan(left)) // beside the body
+              error += left * left;
           }
         return error;
       }
@@ -128,12 +130,19 @@ namespace PeriDeal
       /** That of the mean; 0 but for round-off is none. */
       double variation() const
       {
-        double mean = 0., sum = 0.;
+        double      mean = 0., sum = 0.;
+        std::size_t n_inside = 0;
         for (const double v : values)
-          mean += v / values.size();
+          if (!std::isnan(v))
+            {
+              mean += v;
+              ++n_inside;
+            }
+        mean /= std::max<std::size_t>(1, n_inside);
         for (const double v : values)
-          sum += (v - mean) * (v - mean);
-        return sum > 1e-24 * values.size() * (mean * mean + 1e-300) ? sum : 0.;
+          if (!std::isnan(v))
+            sum += (v - mean) * (v - mean);
+        return sum > 1e-24 * n_inside * (mean * mean + 1e-300) ? sum : 0.;
       }
 
 
@@ -185,8 +194,9 @@ namespace PeriDeal
       static constexpr unsigned int nowhere = numbers::invalid_unsigned_int;
 
       /** @param by_direction look at each direction, too */
-      FormulaScan(const Scene<dim> &scene, const bool by_direction)
-        : scene(scene)
+      FormulaScan(const BodyOfChoice<dim> &body, const bool by_direction)
+        : body(body.given.get())
+        , scene(*body.scene)
         , by_direction(by_direction)
         , fineness_along(dim, 1.)
       {}
@@ -243,10 +253,26 @@ namespace PeriDeal
       void see_condition(const types::boundary_id id, const Expression &formula, const Jumps jumps)
       {
         const unsigned int side = side_of(id);
+        if (side == nowhere && body != nullptr && id < first_part_id)
+          return see_on_given_side(id, formula);
         see(formula, meets_crack(side) ? Jumps::do_not_matter : jumps, side);
       }
 
     private:
+      /** A side that is none of the box around the body. */
+      void see_on_given_side(const types::boundary_id id, const Expression &formula)
+      {
+        if (!formula.depends_on_position())
+          return;
+        static constexpr double parts_of_time[] = {0., 0.31, 0.67, 1.};
+        for (const double part : parts_of_time)
+          if (part == 0. || (formula.depends_on_time() && !scene.time.steady))
+            found.fineness =
+              std::max(found.fineness, body->fineness_on_side(id, [&](const Point<dim> &p) {
+                return formula.value(p, part * scene.time.end_time);
+              }));
+      }
+
       unsigned int side_of(const types::boundary_id id) const
       {
         const Domain<dim> &domain    = scene.domain;
@@ -303,7 +329,8 @@ namespace PeriDeal
               const double s = on_side && d == side / 2 ? side % 2 : x[k++];
               p[d]           = (1. - s) * scene.domain.lower[d] + s * scene.domain.upper[d];
             }
-          return function(p, t);
+          return body == nullptr || body->contains(p) ? function(p, t) :
+                                                        std::numeric_limits<double>::quiet_NaN();
         });
         const double fineness = raster.fineness_needed(Raster::all);
         found.fineness        = std::max(found.fineness, fineness);
@@ -313,10 +340,11 @@ namespace PeriDeal
         found.jumps = found.jumps || (jumps == Jumps::matter && raster.jumps());
       }
 
-      const Scene<dim>   &scene;
-      const bool          by_direction;
-      NeedsOfFormulas     found;
-      std::vector<double> fineness_along;
+      const GivenBody<dim> *const body; // null: a box
+      const Scene<dim>           &scene;
+      const bool                  by_direction;
+      NeedsOfFormulas             found;
+      std::vector<double>         fineness_along;
     };
 
 
@@ -376,37 +404,37 @@ namespace PeriDeal
 
 
     template <int dim>
-    FormulaScan<dim> scan_of(const Scene<dim> &scene,
-                             const bool        by_direction,
-                             const bool        materials_on_lines)
+    FormulaScan<dim> scan_of(const BodyOfChoice<dim> &body,
+                             const bool               by_direction,
+                             const bool               materials_on_lines)
     {
       const DeferredFormulaErrors ignored; // they are told where the values are used
-      FormulaScan<dim>            scan(scene, by_direction);
-      see_body(scene, scan, materials_on_lines);
-      see_conditions(scene, scan);
+      FormulaScan<dim>            scan(body, by_direction);
+      see_body(*body.scene, scan, materials_on_lines);
+      see_conditions(*body.scene, scan);
       return scan;
     }
   } // namespace
 
 
   template <int dim>
-  NeedsOfFormulas needs_of_formulas(const Scene<dim>      &scene,
-                                    const SidePoints<dim> &sides,
-                                    const bool             materials_on_lines)
+  NeedsOfFormulas needs_of_formulas(const BodyOfChoice<dim> &body, const bool materials_on_lines)
   {
-    NeedsOfFormulas needs = scan_of(scene, false, materials_on_lines).needs();
-    needs.fineness        = std::max(needs.fineness, fineness_of_first_layer(scene, sides));
-    needs.jumps           = needs.jumps || given_values_disagree(scene, sides);
+    const Scene<dim>      &scene = *body.scene;
+    const SidePoints<dim> &sides = body.sides;
+    NeedsOfFormulas        needs = scan_of(body, false, materials_on_lines).needs();
+    needs.fineness               = std::max(needs.fineness, fineness_of_first_layer(scene, sides));
+    needs.jumps                  = needs.jumps || given_values_disagree(scene, sides);
     return needs;
   }
 
 
   template <int dim>
-  std::vector<double> needs_along_edges(const Scene<dim> &scene, const SidePoints<dim> &sides)
+  std::vector<double> needs_along_edges(const BodyOfChoice<dim> &body)
   {
-    std::vector<double> along = scan_of(scene, true, false).along_edges();
+    std::vector<double> along = scan_of(body, true, false).along_edges();
     for (double &fineness : along)
-      fineness = std::max(fineness, fineness_of_first_layer(scene, sides));
+      fineness = std::max(fineness, fineness_of_first_layer(*body.scene, body.sides));
     return along;
   }
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "given_body.h"
+#include "body_of_choice.h"
 
 namespace PeriDeal
 {
@@ -16,6 +16,7 @@ namespace PeriDeal
   {
     double fineness = 1.;    // cells along the longest edge
     bool   jumps    = false; // within cells: errors get smaller only as cells do, unevenly
+    bool   disagree = false; // given_values_disagree(): the same, but at corners
   };
 
 
@@ -30,14 +31,11 @@ namespace PeriDeal
    *
    * Jumps are looked for in what makes the solution rough: materials, given values, initial fields,
    * and parts of sides where values are given. Of a function that jumps the interpolant on the
-   * finest raster is wrong by more than half of what it is on one twice as coarse. Values of sides
-   * that disagree where these meet are jumps, too. Not collective.
+   * finest raster is wrong by more than half of what it is on one twice as coarse. Not collective.
    * @param materials_on_lines cells are of one material each, so that it may jump between them
    */
   template <int dim>
-  NeedsOfFormulas needs_of_formulas(const Scene<dim>      &scene,
-                                    const SidePoints<dim> &sides,
-                                    const bool             materials_on_lines);
+  NeedsOfFormulas needs_of_formulas(const BodyOfChoice<dim> &body, const bool materials_on_lines);
 
   /**
    * The fineness of those needs with cells that are short in one direction alone, for each
@@ -45,5 +43,5 @@ namespace PeriDeal
    * Takes some times as long. Not collective.
    */
   template <int dim>
-  std::vector<double> needs_along_edges(const Scene<dim> &scene, const SidePoints<dim> &sides);
+  std::vector<double> needs_along_edges(const BodyOfChoice<dim> &body);
 } // namespace PeriDeal

@@ -31,9 +31,79 @@ namespace PeriDeal
             for (const unsigned int v : face->vertex_indices())
               sides[face->boundary_id()].push_back(face->vertex(v));
       }
+    std::vector<CellBox> boxes;
+    for (const auto &cell : mesh->active_cell_iterators())
+      boxes.emplace_back(cell->bounding_box(), cell);
+    cells       = pack_rtree(boxes);
     spacing     = std::pow(volume / mesh->n_active_cells(), 1. / dim);
     is_round    = !given.manifolds.empty();
     has_corners = !corners_of_body(scene, *mesh).empty();
+  }
+
+
+  template <int dim>
+  bool GivenBody<dim>::contains(const Point<dim> &p) const
+  {
+    for (const auto &[around, cell] :
+         cells | boost::geometry::index::adaptors::queried(boost::geometry::index::intersects(p)))
+      if (cell->point_inside(p))
+        return true;
+    return false;
+  }
+
+
+  template <int dim>
+  double GivenBody<dim>::fineness_on_side(
+    const types::boundary_id                         side,
+    const std::function<double(const Point<dim> &)> &function) const
+  {
+    constexpr unsigned int           n       = 32; // points along an edge
+    constexpr double                 allowed = 0.2;
+    std::vector<std::vector<double>> edges;
+    const auto                       add = [&](const Point<dim> &a, const Point<dim> &b) {
+      edges.emplace_back();
+      for (unsigned int k = 0; k <= n; ++k)
+        edges.back().push_back(function(a + static_cast<double>(k) / n * (b - a)));
+    };
+    if constexpr (dim > 1)
+      for (const auto &cell : mesh->active_cell_iterators())
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary() && face->boundary_id() == side)
+            {
+              if constexpr (dim == 2)
+                add(face->vertex(0), face->vertex(1));
+              else
+                for (unsigned int l = 0; l < GeometryInfo<dim>::lines_per_face; ++l)
+                  add(face->line(l)->vertex(0), face->line(l)->vertex(1));
+            }
+    double       mean = 0., variation = 0.;
+    const double n_values = edges.size() * (n + 1.);
+    for (const auto &edge : edges)
+      for (const double value : edge)
+        mean += value / n_values;
+    for (const auto &edge : edges)
+      for (const double value : edge)
+        variation += (value - mean) * (value - mean);
+    const auto [lower, upper] = box.get_boundary_points();
+    double fineness           = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      fineness = std::max(fineness, (upper[d] - lower[d]) / spacing);
+    if (!(variation > 1e-24 * n_values * (mean * mean + 1e-300)))
+      return 1.;
+    for (unsigned int stride = n; stride > 1; stride /= 2, fineness *= 2.)
+      {
+        double error = 0.;
+        for (const auto &edge : edges)
+          for (unsigned int k = 0; k < n; ++k)
+            {
+              const unsigned int low = k / stride * stride;
+              const double       s   = static_cast<double>(k - low) / stride;
+              error += std::pow(edge[k] - (1. - s) * edge[low] - s * edge[low + stride], 2);
+            }
+        if (error < allowed * allowed * variation)
+          break;
+      }
+    return fineness;
   }
 
 

@@ -5,11 +5,14 @@
 
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/grid/tria.h>
+#include <deal.II/numerics/rtree.h>
 
 #include <perideal/scene/scene.h>
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace PeriDeal
@@ -26,7 +29,23 @@ namespace PeriDeal
     /** Regions of the scene know the mesh afterwards. Throws UserError. Collective. */
     GivenBody(const Scene<dim> &scene, const MPI_Comm communicator);
 
+    /** Whether a point lies in a coarse cell. Not collective. */
+    bool contains(const dealii::Point<dim> &p) const;
+
+    /**
+     * How many cells along the longest edge of the box a function on a side needs: the fewest, of
+     * the coarse ones or halves of these, on which its linear interpolant along edges of their faces
+     * is right to a fifth of its variation. Not collective.
+     */
+    double fineness_on_side(
+      const dealii::types::boundary_id                         side,
+      const std::function<double(const dealii::Point<dim> &)> &function) const;
+
+    using CellBox = std::pair<dealii::BoundingBox<dim>,
+                              typename dealii::Triangulation<dim>::active_cell_iterator>;
+
     std::unique_ptr<dealii::Triangulation<dim>> mesh; // on each process
+    dealii::RTree<CellBox>                      cells;
     dealii::BoundingBox<dim>                    box;
     SidePoints<dim>                             sides;
     double                                      spacing = 0.; // edge of a cell of the mean size

@@ -59,7 +59,8 @@ namespace PeriDeal
 
 
     /**
-     * One point somewhere in each cell of a mesh, several where there are few cells, or in one of
+     * Some n points: one somewhere in each cell of a mesh, several where there are few cells (the
+     * error may be in a few of them), or in one of
      * so many cells that about n are left: adapted meshes have their cells where errors would be.
      * Chance follows from the places of cells, so that it does not matter how a mesh is dealt out.
      * Collective.
@@ -67,9 +68,8 @@ namespace PeriDeal
     template <int dim>
     Sample sample_of(const Triangulation<dim> &mesh, const double n)
     {
-      constexpr double    least = 200.;
       const double        cells = mesh.n_global_active_cells(), share = std::min(1., n / cells);
-      const unsigned int  n_points = static_cast<unsigned int>(std::ceil(least / cells));
+      const unsigned int  n_points = static_cast<unsigned int>(std::ceil(n / cells));
       std::vector<double> own;
       for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())

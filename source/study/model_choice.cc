@@ -252,6 +252,8 @@ namespace PeriDeal
           "room around the ends of cracks for some cells.");
         if (family.n_tried() >= most)
           return std::to_string(most) + " tries";
+        if (attempt.fineness <= family.last().attempt.fineness)
+          return "the number of halvings of a mesh ('Refinements' in section 'Domain')";
         // A transient problem is computed again for the results on the way.
         const double runs = scene.time.steady ? 1. : 2.;
         return limit_of(runs * family.expected_time(attempt), family.expected_memory(attempt));

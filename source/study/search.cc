@@ -70,9 +70,10 @@ namespace PeriDeal
                             family.first_ratio());
     else if (n_compared() > 2 && now.error > tolerance)
       wanted = fineness_for(now, last, aim * tolerance, farthest);
-    const double least   = 1.1 * last;
-    Attempt      attempt = with_settings(wanted);
-    for (double more = least; attempt.fineness < least; more *= 1.1)
+    const double     least   = 1.1 * last;
+    Attempt          attempt = with_settings(wanted);
+    constexpr double most    = 100.; // of a given mesh there may be no finer one
+    for (double more = least; attempt.fineness < least && more < most * least; more *= 1.1)
       attempt = with_settings(more);
     return attempt;
   }
