@@ -154,7 +154,7 @@ namespace PeriDeal
     {
       const BoundaryConditions<dim> &given = scene.boundary_conditions;
       const double                   half  = std::acos(-1.);
-      constexpr double               wide = 1.26, blunt = 0.6; // in half turns
+      constexpr double               wide = 1.1, blunt = 0.6; // in half turns
       if (seen.sides.empty())
         return false;
       const bool is_round = seen.manifolds[0] != numbers::flat_manifold_id &&

@@ -83,7 +83,7 @@ namespace PeriDeal
     declare("Fine where", EntryType::text, "auto") =
       "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0, and in the zone of section `Coupling` if "
       "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. `crack ends`: at the ends of cracks, in three dimensions their "
-      "edges, and in that zone likewise. `corners`: besides, at corners of the body that a mesh has, where its sides open to more than 225 degrees inside, and where on a smooth side given values end. "
+      "edges, and in that zone likewise. `corners`: besides, at corners of the body that a mesh has, where its sides open to more than 200 degrees inside, and where on a smooth side given values end. "
       "Beyond, there are at least two cells of each size.";
     declare(coarsening.refinements, "Refinements", "0") =
       "How often the cells of a mesh file, of a generator or of a plate with fitted rims are halved in each direction. Round sides of the latter two stay round.";

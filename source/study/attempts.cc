@@ -55,8 +55,13 @@ namespace PeriDeal
       first = first_counts();
     if (is_given())
       return;
-    first_fineness =
-      fineness_of(family == Family::faces ? *on_faces(coarsest()) : counts(coarsest()));
+    if (family == Family::faces)
+      faces_unit = fineness_of(*on_faces(1.));
+    const CellCounts cells = family == Family::faces ? *on_faces(coarsest()) : counts(coarsest());
+    // All directions get finer from the first mesh on, however cracks or points fit into it.
+    if (family != Family::whole && family != Family::bonds)
+      first.assign(cells.begin(), cells.end());
+    first_fineness = fineness_of(cells);
   }
 
 
@@ -130,7 +135,7 @@ namespace PeriDeal
   CellCounts Attempts<dim>::counts(const double fineness) const
   {
     // All edges get finer, or nothing is seen of what varies along one.
-    const bool   grows = family == Family::whole || family == Family::faces;
+    const bool   grows = family != Family::bonds;
     const double ratio = grows && first_fineness > 0. ? fineness / first_fineness : 1.;
     CellCounts   cells;
     for (unsigned int d = 0; d < dim; ++d)
@@ -235,6 +240,19 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /**
+     * Of a mesh whose cells are halved so often at cracks across them: most of the error comes from
+     * there, and halvings cannot follow the square of the cells exactly.
+     */
+    double fineness_at_cracks(const double far, const unsigned int levels)
+    {
+      return std::sqrt(2. * far * std::exp2(levels));
+    }
+  } // namespace
+
+
   template <int dim>
   unsigned int Attempts<dim>::refinements(const double fineness) const
   {
@@ -256,6 +274,8 @@ namespace PeriDeal
                         family == Family::given_pairs || dim == 3 ? 2. : 3.);
     levels           = std::min(levels, most - n);
     attempt.fineness = std::exp2(n) * longest / body.given->spacing;
+    if (family == Family::given_pairs)
+      attempt.fineness = fineness_at_cracks(attempt.fineness, levels);
     attempt.settings.insert(attempt.settings.end(), body.settings.begin(), body.settings.end());
     attempt.settings.emplace_back("Domain/Refinements", std::to_string(n + levels));
     attempt.settings.emplace_back("Domain/Coarsening", std::to_string(levels));
@@ -274,7 +294,7 @@ namespace PeriDeal
     if (family == Family::faces)
       {
         cells  = *on_faces(fineness);
-        levels = halvings(fineness_of(cells) / fineness_of(*on_faces(1.)), dim == 3 ? 2. : 3.);
+        levels = halvings(fineness_of(cells) / faces_unit, dim == 3 ? 2. : 3.);
         attempt.settings.emplace_back("Domain/Fine where", "crack ends");
       }
     else if (family != Family::whole)
@@ -282,8 +302,10 @@ namespace PeriDeal
         levels = halvings(fineness / 4., 2.);
         attempt.settings.emplace_back("Domain/Fine where", "auto");
       }
-    attempt.fineness = fineness_of(cells);
     levels           = possible_halvings(cells, levels);
+    attempt.fineness = fineness_of(cells);
+    if (family == Family::pairs || family == Family::zone)
+      attempt.fineness = fineness_at_cracks(attempt.fineness, levels);
     for (unsigned int &n : cells)
       n <<= levels;
     attempt.settings.emplace_back("Domain/Cells", to_text(cells));
@@ -532,6 +554,9 @@ namespace PeriDeal
     double least = std::max(fewest_cells<dim>, 0.25 * needs.fineness);
     if (is_given())
       least = std::max(least, longest / body.given->spacing);
+    if (family == Family::zone) // families need cells about as long as wide
+      for (unsigned int d = 0; d < dim; ++d)
+        least = std::max(least, 2. * longest / (box.upper[d] - box.lower[d]));
     if (family == Family::pairs || family == Family::zone)
       least = std::max(least, fineness_at_gaps(narrowest_gap(box, longest) / longest));
     return least;

@@ -130,7 +130,8 @@ namespace PeriDeal
     NeedsOfFormulas          needs;
     std::optional<std::vector<std::vector<double>>> planes; // of materials, to be on lines
     Family                                          family = Family::whole;
-    std::vector<double> first; // family `whole`: cells of its coarsest mesh, not rounded
+    std::vector<double> first; // cells of the first mesh, of a family other than `bonds`
     double              first_fineness = 0.; // of the coarsest mesh; 0 until it is known
+    double faces_unit = 0.; // fineness of the coarsest mesh that has the cracks on faces
   };
 } // namespace PeriDeal

@@ -180,6 +180,10 @@ namespace PeriDeal
     if (steps.size() == 2)
       return scene.accuracy.measure == AccuracyMeasure::field && family.best_order() > 1. &&
              largest_error(steps) <= tolerance;
+    // A low order is that of something rough, which comes unevenly.
+    constexpr double rough = 0.7, careful = 0.8;
+    if (now.order < rough * family.best_order() && now.error > careful * tolerance)
+      return false;
     return steps.size() > 3 || now.order > 0.5 * family.best_order();
   }
 

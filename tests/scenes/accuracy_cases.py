@@ -13,8 +13,9 @@ import numpy as np
 class Case:
     """A scene and its exact solution. `exact` gives n values of a point's columns, or n x dim of a displacement."""
 
-    def __init__(self, name, kind, exact, dimension=2, **sections):
+    def __init__(self, name, kind, exact, dimension=2, inside=None, **sections):
         self.name, self.kind, self.exact, self.dimension = name, kind, exact, dimension
+        self.inside = inside or (lambda p: np.full(len(p), True))  # the points of the box that lie in the body
         self.sections = sections
 
     def text(self):
@@ -100,6 +101,49 @@ def smooth_cases():
         Case("mixed", "smooth", lambda p: p[:, 0] ** 3 - 3 * p[:, 0] * p[:, 1] ** 2 + p[:, 1],
              domain={"Lower corner": "0, 0", "Upper corner": "2, 0.5"},
              boundary={"Dirichlet": "left: y ; top: x^3-0.75*x+0.5", "Flux": "right: 3*(4-y^2) ; bottom: -1"}),
+    ]
+
+
+def body_cases():
+    """Bodies that are no boxes: round holes, a corner, meshes of deal.II's generators, layers."""
+    def hole(x, y, a):
+        return lambda p: np.hypot(p[:, 0] - x, p[:, 1] - y)
+
+    r = hole(0.1, -0.05, 0.35)
+    square = "((x-0.1)^2+(y+0.05)^2)"
+    dipole = f"(x-0.1)*(1+{0.35 ** 2}/{square})"
+    bore = "(1+z)*(x-0.45)*(1+0.04/((x-0.45)^2+(y-0.5)^2))"
+    away = hole(0.45, 0.5, 0.2)
+    corner = "(x^2+y^2)^(1/3)*sin(2/3*(atan2(y,x)+(y < -1e-12 ? 2*pi : 0)))".replace("pi", f"{math.pi:.17g}")
+
+    def of_corner(p):
+        phi = np.arctan2(p[:, 1], p[:, 0])
+        return np.hypot(p[:, 0], p[:, 1]) ** (2 / 3) * np.sin(2 / 3 * np.where(phi < -1e-12, phi + 2 * np.pi, phi))
+
+    ring = lambda p: np.hypot(p[:, 0], p[:, 1])
+    # A + B/r^2 along the radius: an elastic ring in any plane state
+    swelling = lambda p: p * (0.01 + 0.02 / ring(p) ** 2)[:, None]
+    ball = lambda p: np.sqrt((p ** 2).sum(axis=1))
+    return [
+        Case("insulated round hole", "body", lambda p: (p[:, 0] - 0.1) * (1 + 0.35 ** 2 / r(p) ** 2), inside=lambda p: r(p) > 0.35,
+             domain={**SQUARE, "Holes": "circle: 0.1, -0.05, 0.35"}, boundary={"Dirichlet": all_sides(dipole, 2)}),
+        Case("cold rim", "body", lambda p: np.log(r(p)), inside=lambda p: r(p) > 0.35,
+             domain={**SQUARE, "Holes": "circle: 0.1, -0.05, 0.35"}, boundary={"Dirichlet": all_sides(f"log(sqrt({square}))", 2) + f"; hole: {math.log(0.35):.17g}"}),
+        Case("bore", "body", lambda p: (1 + p[:, 2]) * (p[:, 0] - 0.45) * (1 + 0.04 / away(p) ** 2), 3, inside=lambda p: away(p) > 0.2,
+             domain={"Upper corner": "1, 1, 0.5", "Holes": "circle: 0.45, 0.5, 0.2"}, boundary={"Dirichlet": all_sides(bore, 3)}),
+        Case("corner of an L", "body", of_corner, inside=lambda p: (p[:, 0] < 0) | (p[:, 1] > 0),
+             domain={**SQUARE, "Holes": "rectangle: 0, -1, 1, 0"}, boundary={"Dirichlet": all_sides(corner, 2) + "; hole: 0"}),
+        Case("ring of a generator", "body", lambda p: np.log(ring(p)), inside=lambda p: (ring(p) > 0.5) & (ring(p) < 0.95),
+             domain={**SQUARE, "Shape": "generator", "Generator": "hyper_shell", "Generator arguments": "0, 0 : 0.5 : 1 : 10 : true"},
+             boundary={"Dirichlet": f"0: {math.log(0.5):.17g} ; 1: 0"}),
+        Case("elastic ring", "elastic", swelling, inside=lambda p: (ring(p) > 0.5) & (ring(p) < 0.95),
+             domain={**SQUARE, "Shape": "generator", "Generator": "hyper_shell", "Generator arguments": "0, 0 : 0.5 : 1 : 12 : true"},
+             material={"Young modulus": "1", "Poisson ratio": "0.3"},
+             boundary={"Displacement": "; ".join(f"{k}: x*{f}, y*{f}" for k, f in ((0, 0.09), (1, 0.03)))}),
+        Case("ball", "body", lambda p: p[:, 0] ** 2 - p[:, 2] ** 2 + p[:, 1], 3, inside=lambda p: ball(p) < 0.85,
+             domain={"Lower corner": "-1, -1, -1", "Upper corner": "1, 1, 1", "Shape": "generator", "Generator": "hyper_ball", "Generator arguments": "0, 0, 0 : 1 : true"}, boundary={"Dirichlet": "0: x^2-z^2+y"}),
+        Case("two layers", "body", lambda p: np.where(p[:, 0] < 0.4, p[:, 0] * 10 / 4.6, (p[:, 0] + 3.6) / 4.6),
+             material={"Conductivity": "x < 0.4 ? 1 : 10"}, boundary={"Dirichlet": "left: 0 ; right: 1"}),
     ]
 
 

@@ -13,7 +13,7 @@ namespace PeriDeal
 {
   /**
    * Where the solution of a body is rough whatever the formulas of the scene: corners that open to
-   * more than 225 degrees inside, ends of faces that were cut apart among them, and, on a smooth
+   * more than 200 degrees inside, ends of faces that were cut apart among them, and, on a smooth
    * side, places where a given value or displacement ends, and where sides that meet have other
    * values. In two dimensions points, in three edges
    * of coarse cells by their two ends. Round sides have no corners. None in one dimension.
