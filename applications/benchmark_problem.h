@@ -6,7 +6,7 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/operators/diffusion/bond_operator.h>
+#include <perideal/operators/diffusion/extended_bond_term.h>
 
 #include <chrono>
 #include <ctime>
@@ -94,7 +94,7 @@ namespace PeriDeal
                                            scene.domain,
                                            scene.cracks,
                                            scene.peridynamics.sampling.nodal_volume);
-      bonds          = std::make_unique<BondOperator<dim>>(*nodes, scene);
+      bonds          = field_of_bonds(*nodes, scene);
     }
 
     Vector initial_value() const
@@ -115,7 +115,7 @@ namespace PeriDeal
     std::unique_ptr<dealii::Triangulation<dim>> mesh;
     std::unique_ptr<dealii::DoFHandler<dim>>    handler;
     std::unique_ptr<Nodes<dim>>                 nodes;
-    std::unique_ptr<BondOperator<dim>>          bonds;
+    std::unique_ptr<FieldOperator<dim>>         bonds;
     double                                      memory_before, memory_mesh, memory_handler;
   };
 } // namespace PeriDeal

@@ -8,7 +8,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <perideal/operators/coupling/coupling.h>
-#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/diffusion/cell_term.h>
 #include <perideal/solvers/stepper.h>
 
 #include <filesystem>
@@ -36,13 +36,13 @@ namespace PeriDeal
           number_along_lattice(*handler, scene.domain);
       }
 
-      std::unique_ptr<FEMOperator<dim>> elements() const
+      std::unique_ptr<FieldOperator<dim>> elements() const
       {
-        return std::make_unique<FEMOperator<dim>>(*handler, scene);
+        return field_of_elements<dim>(*handler, scene);
       }
 
       /** Nodes and bonds first, as in a run. */
-      std::unique_ptr<FEMOperator<dim>> coupled()
+      std::unique_ptr<FieldOperator<dim>> coupled()
       {
         nodes =
           std::make_unique<Nodes<dim>>(*handler, scene.domain, scene.cracks, NodalVolume::partial);
@@ -50,7 +50,7 @@ namespace PeriDeal
                                       scene,
                                       Zone<dim>(scene.coupling, scene.horizon()),
                                       scene.coupling.scheme);
-        return std::make_unique<FEMOperator<dim>>(*handler, scene, std::move(coupling));
+        return field_of_elements(*handler, scene, std::move(coupling));
       }
 
       Scene<dim>                                  scene;

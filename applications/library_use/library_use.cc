@@ -17,7 +17,7 @@
 
 #include <perideal/analysis/decay_rate.h>
 #include <perideal/base/user_error.h>
-#include <perideal/operators/diffusion/bond_operator.h>
+#include <perideal/operators/diffusion/extended_bond_term.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/stepper.h>
 
@@ -112,22 +112,22 @@ namespace
   {
     PeriDeal::HeatParameters<2> body;
     describe_square(body);
-    PeriDeal::Nodes<2>        nodes(square.dofs, body);
-    PeriDeal::BondOperator<2> bonds(nodes, body);
-    checks.out << "Apply: " << bonds.size().unknowns << " dofs, " << bonds.size().bonds
-               << " bonds, " << bonds.form_note() << std::endl;
+    PeriDeal::Nodes<2> nodes(square.dofs, body);
+    const auto         field = PeriDeal::field_of_bonds(nodes, body);
+    checks.out << "Apply: " << field->size().unknowns << " dofs, " << field->size().bonds
+               << " bonds, " << PeriDeal::bonds_of(*field).form_note() << std::endl;
 
     Vector u, y;
-    bonds.initialize_vector(u);
-    bonds.initialize_vector(y);
+    field->initialize_vector(u);
+    field->initialize_vector(y);
     interpolate(
       nodes,
       [](const Point<2> &p) { return p[0] * p[0] + 3. * p[1] - p[0] * p[1]; },
       u);
-    bonds.apply(y, u);
+    field->apply(y, u);
 
     double       worst = 0.;
-    const double reach = bonds.diffusion_bonds().weights().reach();
+    const double reach = PeriDeal::bonds_of(*field).diffusion_bonds().weights().reach();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const Point<2> &p = nodes.position(i);
@@ -145,7 +145,7 @@ namespace
     Vector own(square.dofs.locally_owned_dofs(), square.mesh.get_communicator());
     own = 1.;
     u.copy_locally_owned_data_from(own);
-    bonds.apply(y, u);
+    field->apply(y, u);
     checks.smaller("K u = 0 for u = 1", y.linfty_norm(), 1e-12);
   }
 
@@ -161,12 +161,13 @@ namespace
     for (unsigned int side = 0; side < 4; ++side)
       body.boundary_conditions.prescribe(side, 0.);
     body.peridynamics.treatment = PeriDeal::BoundaryTreatment::fictitious_mirror;
-    PeriDeal::Nodes<2>        nodes(square.dofs, body);
-    PeriDeal::BondOperator<2> bonds(nodes, body);
-    const auto terms = PeriDeal::lattice_terms<2>(bonds.diffusion_bonds().weights().members(),
-                                                  nodes.lattice()->spacing,
-                                                  conductivity);
-    const auto rate  = [&](const unsigned int a, const unsigned int b) {
+    PeriDeal::Nodes<2> nodes(square.dofs, body);
+    const auto         field = PeriDeal::field_of_bonds(nodes, body);
+    const auto         terms =
+      PeriDeal::lattice_terms<2>(PeriDeal::bonds_of(*field).diffusion_bonds().weights().members(),
+                                 nodes.lattice()->spacing,
+                                 conductivity);
+    const auto rate = [&](const unsigned int a, const unsigned int b) {
       return PeriDeal::lattice_decay_rate(terms, {{a * numbers::PI, b * numbers::PI, 0.}}, storage);
     };
 
@@ -174,7 +175,7 @@ namespace
     for (unsigned int a = 1; a < n_cells; ++a)
       for (unsigned int b = 1; b < n_cells; ++b)
         fastest = std::max(fastest, rate(a, b));
-    const PeriDeal::Spectrum spectrum = bonds.spectrum();
+    const PeriDeal::Spectrum spectrum = field->spectrum();
     checks.out << "Spectrum: largest eigenvalue " << fastest << ", sharp bound " << spectrum.sharp
                << ", safe bound " << spectrum.safe << std::endl;
     checks.smaller("largest eigenvalue / sharp bound", fastest / spectrum.sharp, 1.);
@@ -187,18 +188,18 @@ namespace
     const double             t_end = 1. / rate(1, 2); // time to decay to 1/e
     PeriDeal::StepperOptions options;
     options.tolerance  = 1e-12;
-    const auto stepper = PeriDeal::make_stepper("auto", bonds, options);
+    const auto stepper = PeriDeal::make_stepper("auto", *field, options);
     Vector     u, expected;
-    bonds.initialize_vector(u);
-    bonds.initialize_vector(expected);
+    field->initialize_vector(u);
+    field->initialize_vector(expected);
     interpolate(nodes, harmonic, u);
     interpolate(
       nodes,
       [&](const Point<2> &p) { return std::exp(-1.) * harmonic(p); },
       expected);
-    bonds.distribute(u, 0.);
+    field->distribute(u, 0.);
     stepper->advance(u, 0., t_end);
-    checks.out << "Decay: stepper " << stepper->name() << ", " << bonds.n_applications()
+    checks.out << "Decay: stepper " << stepper->name() << ", " << field->n_applications()
                << " operator applications" << std::endl;
     checks.smaller("sin(pi x) sin(2 pi y) decays to 1/e, largest error",
                    largest_difference(u, expected),
@@ -214,12 +215,12 @@ namespace
     body.boundary_conditions.prescribe(0, 0.);
     body.boundary_conditions.prescribe(1, 10.);
     body.peridynamics.treatment = PeriDeal::BoundaryTreatment::fictitious_mirror;
-    PeriDeal::Nodes<2>        nodes(square.dofs, body);
-    PeriDeal::BondOperator<2> bonds(nodes, body);
-    Vector                    u, expected;
-    bonds.initialize_vector(u);
-    bonds.initialize_vector(expected);
-    const unsigned int n = PeriDeal::solve_steady(bonds, u, 0., 1e-12, 200);
+    PeriDeal::Nodes<2> nodes(square.dofs, body);
+    const auto         field = PeriDeal::field_of_bonds(nodes, body);
+    Vector             u, expected;
+    field->initialize_vector(u);
+    field->initialize_vector(expected);
+    const unsigned int n = PeriDeal::solve_steady(*field, u, 0., 1e-12, 200);
     interpolate(
       nodes,
       [](const Point<2> &p) { return 10. * p[0]; },
@@ -250,13 +251,14 @@ namespace
     body.initial_and_source.source = 5.;
     body.boundary_conditions.prescribe(0, of_place([](const Point<3> &p) { return p[0] * p[1]; }));
 
-    PeriDeal::Nodes<2>        nodes(dofs, body);
-    PeriDeal::BondOperator<2> bonds(nodes, body);
-    Vector                    u;
-    bonds.initialize_vector(u);
-    PeriDeal::solve_steady(bonds, u, 0., 1e-12, 200);
-    const PeriDeal::Balance balance = bonds.balance(u, 0., true);
-    checks.out << "Disc: " << bonds.size().bonds << " bonds, " << bonds.form_note() << std::endl;
+    PeriDeal::Nodes<2> nodes(dofs, body);
+    const auto         field = PeriDeal::field_of_bonds(nodes, body);
+    Vector             u;
+    field->initialize_vector(u);
+    PeriDeal::solve_steady(*field, u, 0., 1e-12, 200);
+    const PeriDeal::Balance balance = field->balance(u, 0., true);
+    checks.out << "Disc: " << field->size().bonds << " bonds, "
+               << PeriDeal::bonds_of(*field).form_note() << std::endl;
     checks.smaller("what the source gives leaves through the rim, relative error",
                    std::abs(balance.imbalance()) / balance.throughput(),
                    1e-9);

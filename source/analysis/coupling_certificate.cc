@@ -153,21 +153,23 @@ namespace PeriDeal
     /**
      * What is asked of any body; its K with bonds and without are those of the intact one, of
      * n_components unknowns for each node.
+     * @param cells what knows of elements and bonds: of solids the operator, of diffusion a term
      */
-    template <int dim, typename OperatorType>
+    template <int dim, typename OperatorType, typename CellsType>
     CouplingCertificate examine(const OperatorType &op,
+                                const CellsType    &cells,
                                 const Vector       &held,
                                 const Vector       &noise,
                                 const bool          symmetric,
                                 const unsigned int  n_components)
     {
       CouplingCertificate            result;
-      const Families<dim>           &families = op.bonds().families();
+      const Families<dim>           &families = cells.bonds().families();
       const Nodes<dim>              &nodes    = families.nodes();
       const PatchFields<dim>         fields(nodes);
       TrilinosWrappers::SparseMatrix matrix, elements;
-      op.assemble_intact(matrix, true);
-      op.assemble_intact(elements, false);
+      cells.assemble_intact(matrix, true);
+      cells.assemble_intact(elements, false);
       const HeldSystem system(matrix, elements, held, symmetric, n_components);
       const auto       patch_error = [&](const unsigned int degree) {
         Vector u(held.get_partitioner());
@@ -181,10 +183,10 @@ namespace PeriDeal
       result.cubic                  = patch_error(3);
       result.asymmetry              = system.asymmetry(noise);
       result.lowest_eigenvalue      = system.lowest_eigenvalue(noise, op.lumped_capacity());
-      result.lowest_remainder       = symmetric ? op.lowest_remainder() :
+      result.lowest_remainder       = symmetric ? cells.lowest_remainder() :
                                                   std::numeric_limits<double>::infinity();
-      result.zone_share             = op.bonds().zone_share();
-      result.kept_share             = op.bonds().kept_share();
+      result.zone_share             = cells.bonds().zone_share();
+      result.kept_share             = cells.bonds().kept_share();
       const auto [n_nodes, n_bonds] = count_all_bonds(families);
       result.n_bonds_of_full        = n_bonds;
       result.n_nonzeros_of_full     = 2 * n_bonds + n_nodes;
@@ -204,14 +206,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  CouplingCertificate examine_coupling(const FEMOperator<dim> &op, const bool symmetric)
+  CouplingCertificate examine_coupling(const FieldOperator<dim> &op, const bool symmetric)
   {
-    Vector held;
+    const CellTerm<dim> &cells = cells_of(op);
+    Vector               held;
     op.initialize_vector(held);
-    for (const BoundaryShare &share : op.bonds().families().nodes().boundary_shares())
+    for (const BoundaryShare &share : cells.bonds().families().nodes().boundary_shares())
       held.local_element(share.node) = 1.;
-    op.hanging_nodes().set(held, 1.);
-    return examine<dim>(op, held, op.noise(), symmetric, 1);
+    cells.hanging_nodes().set(held, 1.);
+    return examine<dim>(op, cells, held, op.noise(), symmetric, 1);
   }
 
 
@@ -227,14 +230,14 @@ namespace PeriDeal
     op.fill_noise(noise);
     op.hanging_nodes().set(held, 1.);
     op.hanging_nodes().set(noise, 0.);
-    CouplingCertificate result = examine<dim>(op, held, noise, op.symmetric(), dim);
+    CouplingCertificate result = examine<dim>(op, op, held, noise, op.symmetric(), dim);
     result.n_nonzeros_of_full  = 0; // depends on whether a dilatation joins bonds
     return result;
   }
 
 
-#define PERIDEAL_TEMPLATES(dim)                                                        \
-  template CouplingCertificate examine_coupling(const FEMOperator<dim> &, const bool); \
+#define PERIDEAL_TEMPLATES(dim)                                                          \
+  template CouplingCertificate examine_coupling(const FieldOperator<dim> &, const bool); \
   template CouplingCertificate examine_coupling(const ElasticElements<dim> &);
   PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
 #undef PERIDEAL_TEMPLATES

@@ -29,7 +29,8 @@ namespace PeriDeal
     : elements(elements)
     , error(elements.recovered_bubbles(u))
   {
-    const FEMOperator<dim> &op = elements.linear_operator();
+    const CellTerm<dim>      &cells = cells_of(elements.linear_operator());
+    const FieldOperator<dim> &op    = elements.linear_operator();
     error += elements.prescribed_bubbles(u, t);
     Vector field = elements.prolonged(u);
     field += error;
@@ -47,7 +48,7 @@ namespace PeriDeal
     const Vector everywhere(rhs);
     op.clear_constrained(rhs);
     solve(change, rhs);
-    op.hanging_nodes().interpolate(change);
+    cells.hanging_nodes().interpolate(change);
     error += elements.prolonged(change);
     op.multiply(image, change);
     changed_reactions = image;
@@ -77,12 +78,12 @@ namespace PeriDeal
   template <int dim>
   double FieldError<dim>::of_flow_through(const std::string &side) const
   {
-    const FEMOperator<dim> &op = elements.linear_operator();
-    Vector                  marks(changed_reactions);
-    mark_side(op.dof_handler(),
+    const CellTerm<dim> &cells = cells_of(elements.linear_operator());
+    Vector               marks(changed_reactions);
+    mark_side(cells.dof_handler(),
               *marks.get_partitioner(),
               elements.parameters(),
-              op.hanging_nodes(),
+              cells.hanging_nodes(),
               side,
               marks);
     return marks * changed_reactions - residual * elements.boundary_bubbles(side, marks);

@@ -67,8 +67,9 @@ namespace PeriDeal
   template <int dim>
   typename GoalErrors<dim>::Dual GoalErrors<dim>::point_dual(const Point<dim> &point) const
   {
-    const FEMOperator<dim>   &op = elements.linear_operator();
-    const PointEvaluator<dim> reads(at_point(op.dof_handler(), elements.parameters(), point));
+    const CellTerm<dim>      &cells = cells_of(elements.linear_operator());
+    const FieldOperator<dim> &op    = elements.linear_operator();
+    const PointEvaluator<dim> reads(at_point(cells.dof_handler(), elements.parameters(), point));
     Dual                      dual;
     Vector                    j(solver_residual.get_partitioner());
     dual.value = reads.evaluate(u)[0];
@@ -76,7 +77,7 @@ namespace PeriDeal
     dual.of_bubbles =
       at_point(elements.dof_handler(), elements.parameters(), point).evaluate(bubbles)[0];
     reads.add_weights(0, j);
-    op.hanging_nodes().condense(j);
+    cells.hanging_nodes().condense(j);
     op.clear_constrained(j);
     dual.z.reinit(j);
     solve(dual.z, j);
@@ -88,21 +89,22 @@ namespace PeriDeal
   typename GoalErrors<dim>::Dual GoalErrors<dim>::transfer_dual(
     const SurfaceTransfer &transfer) const
   {
-    const FEMOperator<dim> &op = elements.linear_operator();
-    BoundaryConditions<dim> conditions;
+    const CellTerm<dim>      &cells = cells_of(elements.linear_operator());
+    const FieldOperator<dim> &op    = elements.linear_operator();
+    BoundaryConditions<dim>   conditions;
     conditions.parts = elements.parameters().boundary_conditions.parts;
     conditions.transfers.push_back(transfer);
     Dual                                 dual;
     Vector                               j = elements.linear_vector();
     const Expression                     nothing;
-    const HeatLoads<dim>                 through(op.dof_handler(),
+    const HeatLoads<dim>                 through(cells.dof_handler(),
                                  j.get_partitioner(),
                                  conditions,
                                  nothing,
-                                 op.hanging_nodes());
+                                 cells.hanging_nodes());
     std::vector<types::global_dof_index> indices(GeometryInfo<dim>::vertices_per_cell);
     FullMatrix<double>                   of_cell(indices.size(), indices.size());
-    for (const auto &cell : op.dof_handler().active_cell_iterators())
+    for (const auto &cell : cells.dof_handler().active_cell_iterators())
       if (cell->is_locally_owned() && cell->at_boundary())
         {
           through.find_transfer(cell, of_cell);
@@ -112,7 +114,7 @@ namespace PeriDeal
               j(indices[a]) -= of_cell(a, b);
         }
     j.compress(VectorOperation::add);
-    op.hanging_nodes().condense(j);
+    cells.hanging_nodes().condense(j);
     op.clear_constrained(j);
     Vector rhs(solver_residual.get_partitioner());
     for (unsigned int i = 0; i < rhs.locally_owned_size(); ++i)
@@ -127,17 +129,18 @@ namespace PeriDeal
   template <int dim>
   typename GoalErrors<dim>::Dual GoalErrors<dim>::reaction_dual(const std::string &side) const
   {
+    const CellTerm<dim> &cells = cells_of(elements.linear_operator());
     // J(u) = a(u, phi) - f(phi) with any phi that is 1 on the side and 0 on all others with values.
-    const FEMOperator<dim> &op = elements.linear_operator();
-    Dual                    dual;
+    const FieldOperator<dim> &op = elements.linear_operator();
+    Dual                      dual;
     dual.value = op.balance(u, time, true).sides.at(side);
     dual.sign  = -1.;
     dual.z.reinit(solver_residual);
     Vector rhs(dual.z), inner(dual.z);
-    mark_side(op.dof_handler(),
+    mark_side(cells.dof_handler(),
               *dual.z.get_partitioner(),
               elements.parameters(),
-              op.hanging_nodes(),
+              cells.hanging_nodes(),
               side,
               dual.z);
     op.multiply(rhs, dual.z);
@@ -145,7 +148,7 @@ namespace PeriDeal
     op.clear_constrained(rhs);
     solve(inner, rhs);
     dual.z += inner;
-    op.hanging_nodes().interpolate(dual.z);
+    cells.hanging_nodes().interpolate(dual.z);
     dual.bubbles = elements.boundary_bubbles(side, dual.z);
     return dual;
   }
@@ -154,6 +157,7 @@ namespace PeriDeal
   template <int dim>
   GoalError GoalErrors<dim>::of(const Goal<dim> &goal) const
   {
+    const CellTerm<dim> &cells = cells_of(elements.linear_operator());
     Assert(elements.linear_operator().symmetric(), ExcMessage("The dual matrix is another one."));
     const BoundaryConditions<dim> &conditions = elements.parameters().boundary_conditions;
     const auto                     find       = [&](const auto &list) {
@@ -168,7 +172,7 @@ namespace PeriDeal
     Dual dual = goal.side.empty()                      ? point_dual(goal.point) :
                 transfer != conditions.transfers.end() ? transfer_dual(*transfer) :
                                                          reaction_dual(goal.side);
-    elements.linear_operator().hanging_nodes().interpolate(dual.z);
+    cells.hanging_nodes().interpolate(dual.z);
     Vector weights = elements.recovered_bubbles(dual.z);
     if (dual.bubbles.size() > 0)
       weights += dual.bubbles;

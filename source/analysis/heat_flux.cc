@@ -51,15 +51,15 @@ namespace PeriDeal
      * that of the elements.
      */
     template <int dim>
-    void take_element_flux_beside_large_cells(const FEMOperator<dim> &op,
-                                              const Vector           &u,
-                                              VectorField<dim>       &two_sided,
-                                              VectorField<dim>       &one_sided)
+    void take_element_flux_beside_large_cells(const CellTerm<dim> &cells,
+                                              const Vector        &u,
+                                              VectorField<dim>    &two_sided,
+                                              VectorField<dim>    &one_sided)
     {
-      const Nodes<dim>      &nodes   = op.bonds().families().nodes();
-      const DoFHandler<dim> &dofs    = op.dof_handler();
+      const Nodes<dim>      &nodes   = cells.bonds().families().nodes();
+      const DoFHandler<dim> &dofs    = cells.dof_handler();
       VectorField<dim>       element = two_sided;
-      element_heat_flux<dim>(dofs, op.material(), op.cut_cells(), u, element);
+      element_heat_flux<dim>(dofs, cells.material(), cells.cut_cells(), u, element);
       std::vector<types::global_dof_index> indices(dofs.get_fe().n_dofs_per_cell());
       for (const auto &cell : dofs.active_cell_iterators())
         if (!cell->is_artificial() &&
@@ -81,18 +81,18 @@ namespace PeriDeal
 
 
   template <int dim>
-  void coupled_heat_flux(const FEMOperator<dim> &op,
-                         const Vector           &u,
-                         VectorField<dim>       &two_sided,
-                         VectorField<dim>       &one_sided)
+  void coupled_heat_flux(const CellTerm<dim> &cells,
+                         const Vector        &u,
+                         VectorField<dim>    &two_sided,
+                         VectorField<dim>    &one_sided)
   {
-    const Nodes<dim> &nodes = op.bonds().families().nodes();
+    const Nodes<dim> &nodes = cells.bonds().families().nodes();
     for (unsigned int d = 0; d < dim; ++d)
       {
         two_sided[d] = 0.;
         one_sided[d] = 0.;
       }
-    op.visit_conductances(
+    cells.visit_conductances(
       [&](const unsigned int i, const unsigned int j, const double conductance) {
         const double         difference = u.local_element(j) - u.local_element(i);
         const Tensor<1, dim> q =
@@ -105,7 +105,7 @@ namespace PeriDeal
           }
       });
     if (nodes.is_graded())
-      take_element_flux_beside_large_cells<dim>(op, u, two_sided, one_sided);
+      take_element_flux_beside_large_cells<dim>(cells, u, two_sided, one_sided);
   }
 
 

@@ -76,33 +76,38 @@ namespace PeriDeal
 
 
   template <int dim>
-  QuadraticElements<dim>::QuadraticElements(const FEMOperator<dim>    &op,
+  QuadraticElements<dim>::QuadraticElements(const FieldOperator<dim>  &op,
                                             const BodyParameters<dim> &body,
                                             const Coupling<dim>       *coupling)
     : op(op)
     , body(body)
-    , quadratic(quadratic_dofs(op.dof_handler().get_triangulation()))
+    , quadratic(quadratic_dofs(cells_of(op).dof_handler().get_triangulation()))
     , layout(element_layout(*quadratic, static_cast<const Coupling<dim> *>(nullptr)))
-    , linear_layout(element_layout(op.dof_handler(), static_cast<const Coupling<dim> *>(nullptr)))
+    , linear_layout(
+        element_layout(cells_of(op).dof_handler(), static_cast<const Coupling<dim> *>(nullptr)))
     , hanging(*quadratic, *layout)
     , loads(*quadratic, layout, body.boundary_conditions, body.initial_and_source.source, hanging)
-    , linear_loads(op.dof_handler(),
+    , linear_loads(cells_of(op).dof_handler(),
                    linear_layout,
                    body.boundary_conditions,
                    body.initial_and_source.source,
-                   op.hanging_nodes())
+                   cells_of(op).hanging_nodes())
     , material(*quadratic, body.material, body.initial_and_source.initial_value, true)
-    , linear_material(op.dof_handler(), body.material, body.initial_and_source.initial_value, true)
+    , linear_material(cells_of(op).dof_handler(),
+                      body.material,
+                      body.initial_and_source.initial_value,
+                      true)
     , prescribed(*quadratic, *layout, body.boundary_conditions, hanging, {})
     , prolongation(quadratic->get_fe().n_dofs_per_cell(), GeometryInfo<dim>::vertices_per_cell)
     , left_out(layout)
     , vertex(layout->locally_owned_size(), 0)
     , held(vertex)
   {
-    const FiniteElement<dim> &fe = quadratic->get_fe();
+    const CellTerm<dim>      &cells = cells_of(op);
+    const FiniteElement<dim> &fe    = quadratic->get_fe();
     for (unsigned int i = 0; i < prolongation.m(); ++i)
       for (unsigned int v = 0; v < prolongation.n(); ++v)
-        prolongation(i, v) = op.dof_handler().get_fe().shape_value(v, fe.unit_support_point(i));
+        prolongation(i, v) = cells.dof_handler().get_fe().shape_value(v, fe.unit_support_point(i));
     std::vector<types::global_dof_index> indices(fe.n_dofs_per_cell());
     for (const auto &cell : quadratic->active_cell_iterators())
       if (!cell->is_artificial())
@@ -121,13 +126,14 @@ namespace PeriDeal
   template <int dim>
   void QuadraticElements<dim>::mark_cells_left_out(const Coupling<dim> *coupling)
   {
-    const unsigned int                   n = quadratic->get_fe().n_dofs_per_cell();
+    const CellTerm<dim>                 &cells = cells_of(op);
+    const unsigned int                   n     = quadratic->get_fe().n_dofs_per_cell();
     std::vector<types::global_dof_index> indices(n);
     FullMatrix<double>                   matrix(prolongation.n(), prolongation.n()), mass(matrix);
     Vector                               at_cut(linear_layout); // vertices of cut cells
     std::vector<types::global_dof_index> vertices(prolongation.n());
     const auto                           for_each_own = [&](const auto &visit) {
-      for (const auto &cell : op.dof_handler().active_cell_iterators())
+      for (const auto &cell : cells.dof_handler().active_cell_iterators())
         if (cell->is_locally_owned())
           {
             cell->get_dof_indices(vertices);
@@ -135,7 +141,7 @@ namespace PeriDeal
           }
     };
     for_each_own([&](const Cell &cell) {
-      if (op.cut_cells()[cell->active_cell_index()])
+      if (cells.cut_cells()[cell->active_cell_index()])
         for (const auto index : vertices)
           at_cut(index) += 1.;
     });
@@ -143,7 +149,7 @@ namespace PeriDeal
     at_cut.update_ghost_values();
     const bool scaled = body.peridynamics.scales_beside_cracks();
     for_each_own([&](const Cell &cell) {
-      bool out = op.cut_cells()[cell->active_cell_index()];
+      bool out = cells.cut_cells()[cell->active_cell_index()];
       for (const auto index : vertices)
         out = out || (scaled && at_cut(index) > 0.);
       if (!out && coupling != nullptr)
@@ -192,13 +198,14 @@ namespace PeriDeal
   template <typename Visit>
   void QuadraticElements<dim>::for_each_prolonged(const Visit &visit) const
   {
+    const CellTerm<dim>                 &cells = cells_of(op);
     std::vector<char>                    done(layout->locally_owned_size(), 0);
     std::vector<types::global_dof_index> indices(prolongation.m()), vertices(prolongation.n());
     for (const auto &cell : quadratic->active_cell_iterators())
       if (!cell->is_artificial())
         {
           cell->get_dof_indices(indices);
-          same_cell(cell, op.dof_handler())->get_dof_indices(vertices);
+          same_cell(cell, cells.dof_handler())->get_dof_indices(vertices);
           for (unsigned int i = 0; i < indices.size(); ++i)
             if (layout->in_local_range(indices[i]) && !done[layout->global_to_local(indices[i])])
               {
@@ -225,12 +232,13 @@ namespace PeriDeal
   template <int dim>
   Vector QuadraticElements<dim>::restricted(const Vector &r) const
   {
-    Vector result(linear_layout);
+    const CellTerm<dim> &cells = cells_of(op);
+    Vector               result(linear_layout);
     for_each_prolonged([&](const auto dof, const auto vertex_dof, const double weight) {
       result(vertex_dof) += weight * r(dof);
     });
     result.compress(VectorOperation::add);
-    op.hanging_nodes().condense(result);
+    cells.hanging_nodes().condense(result);
     return result;
   }
 
@@ -317,12 +325,13 @@ namespace PeriDeal
   template <int dim>
   Vector QuadraticElements<dim>::linear_residual(const Vector &v, const double t) const
   {
-    const auto counts = [this](const Cell &cell) { return !is_left_out(cell); };
-    return residual_of(op.dof_handler(),
+    const CellTerm<dim> &cells  = cells_of(op);
+    const auto           counts = [this](const Cell &cell) { return !is_left_out(cell); };
+    return residual_of(cells.dof_handler(),
                        with_ghosts(v, linear_layout),
                        linear_material,
                        linear_loads,
-                       op.hanging_nodes(),
+                       cells.hanging_nodes(),
                        counts,
                        t);
   }
@@ -462,8 +471,9 @@ namespace PeriDeal
   template <int dim>
   std::vector<Vector> QuadraticElements<dim>::second_derivatives(const Vector &v) const
   {
-    const DoFHandler<dim> &dofs = op.dof_handler();
-    std::vector<Cell>      cells;
+    const DoFHandler<dim>   &dofs           = cells_of(op).dof_handler();
+    const HangingNodes<dim> &linear_hanging = cells_of(op).hanging_nodes();
+    std::vector<Cell>        cells;
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial() && !is_left_out(cell))
         cells.push_back(cell);
@@ -471,7 +481,7 @@ namespace PeriDeal
     for (unsigned int c = 0; c < cells.size(); ++c)
       for (const unsigned int k : cells[c]->vertex_indices())
         if (const auto dof = cells[c]->vertex_dof_index(k, 0);
-            linear_layout->in_local_range(dof) && !op.hanging_nodes().is_hanging(dof))
+            linear_layout->in_local_range(dof) && !linear_hanging.is_hanging(dof))
           around[linear_layout->global_to_local(dof)].push_back(c);
     std::vector<Vector>                       second(Fit<dim>::n - dim, Vector(linear_layout));
     std::array<double, Fit<dim>::n - 1 - dim> coefficients;
@@ -491,7 +501,7 @@ namespace PeriDeal
                            cells[c]->material_id() == cells[around[i][0]]->material_id();
             for (const unsigned int k : cells[c]->vertex_indices())
               if (const auto dof = cells[c]->vertex_dof_index(k, 0);
-                  !op.hanging_nodes().is_hanging(dof))
+                  !linear_hanging.is_hanging(dof))
                 fit.add(cells[c]->vertex(k) - middle, v(dof));
           }
         if (!one_material || !fit.solve(coefficients))
@@ -509,12 +519,13 @@ namespace PeriDeal
   template <int dim>
   Vector QuadraticElements<dim>::recovered_bubbles(const Vector &v) const
   {
+    const CellTerm<dim>                 &cells  = cells_of(op);
     const std::vector<Vector>            second = second_derivatives(with_ghosts(v, linear_layout));
     const unsigned int                   n_second = second.size() - 1;
     Vector                               w(layout), n_cells(layout);
     std::vector<types::global_dof_index> indices(prolongation.m());
     std::vector<double>                  sum(n_second);
-    for (const auto &cell : op.dof_handler().active_cell_iterators())
+    for (const auto &cell : cells.dof_handler().active_cell_iterators())
       if (cell->is_locally_owned() && !is_left_out(cell))
         {
           same_cell(cell, *quadratic)->get_dof_indices(indices);

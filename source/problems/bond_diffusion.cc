@@ -6,7 +6,7 @@
 
 #include <perideal/analysis/heat_flux.h>
 #include <perideal/base/instantiate.h>
-#include <perideal/operators/diffusion/bond_operator.h>
+#include <perideal/operators/diffusion/extended_bond_term.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -277,13 +277,13 @@ namespace PeriDeal
       {
         this->make_bond_nodes();
         Timings::Scope scope(this->timings, "operator");
-        bonds = std::make_unique<BondOperator<dim>>(*node_set, scene);
-        doubt = note_on_one_direction(scene, bonds->diffusion_bonds());
+        diffusion = field_of_bonds(*node_set, scene);
+        doubt     = note_on_one_direction(scene, bonds().diffusion_bonds());
       }
 
-      BondOperator<dim> &op() const override
+      FieldOperator<dim> &op() const override
       {
-        return *bonds;
+        return *diffusion;
       }
 
       void set_initial_value(Vector &u) const override
@@ -294,21 +294,23 @@ namespace PeriDeal
 
       std::vector<OutputField> derived_fields(const Vector &u, const double t) const override
       {
-        VectorField<dim>    two_sided, one_sided;
-        std::vector<double> outside;
+        VectorField<dim> two_sided, one_sided;
         for (unsigned int d = 0; d < dim; ++d)
           {
-            bonds->initialize_vector(two_sided[d]);
-            bonds->initialize_vector(one_sided[d]);
+            diffusion->initialize_vector(two_sided[d]);
+            diffusion->initialize_vector(one_sided[d]);
           }
-        bonds->fictitious_values(u, t, outside);
-        bond_heat_flux<dim>(bonds->diffusion_bonds(), u, outside, two_sided, one_sided);
+        bond_heat_flux<dim>(bonds().diffusion_bonds(),
+                            u,
+                            bonds().values({u, t}),
+                            two_sided,
+                            one_sided);
         std::array<Vector, 1> volumes, cuts;
-        bonds->initialize_vector(volumes[0]);
-        bonds->initialize_vector(cuts[0]);
+        diffusion->initialize_vector(volumes[0]);
+        diffusion->initialize_vector(cuts[0]);
         for (unsigned int i = 0; i < node_set->n_owned(); ++i)
           volumes[0].local_element(i) = node_set->volume(i);
-        cut_fraction(bonds->diffusion_bonds(), cuts[0]);
+        cut_fraction(bonds().diffusion_bonds(), cuts[0]);
         std::vector<OutputField> fields;
         const std::string        name = names_of(scene.general.physics).flux;
         fields.push_back(vector_field<dim>(name, two_sided));
@@ -341,7 +343,7 @@ namespace PeriDeal
         const std::function<double(const Point<dim> &)> &exact) const override
       {
         Vector expected;
-        bonds->initialize_vector(expected);
+        diffusion->initialize_vector(expected);
         for (unsigned int i = 0; i < node_set->n_owned(); ++i)
           expected.local_element(i) = exact(node_set->position(i));
         return nodal_difference(u, expected, [&](const unsigned int i) {
@@ -351,10 +353,10 @@ namespace PeriDeal
 
       ChosenSettings settings() const override
       {
-        auto list = this->bond_settings(bonds->diffusion_bonds().families());
+        auto list = this->bond_settings(bonds().diffusion_bonds().families());
         if (!scene.material.uniform_conductivity())
           list.emplace_back("interface rule", name_of(scene.material.interface_rule));
-        list.emplace_back("operator form", bonds->form_note());
+        list.emplace_back("operator form", bonds().form_note());
         return list;
       }
 
@@ -362,7 +364,7 @@ namespace PeriDeal
       {
         const Peridynamics      &p = scene.peridynamics;
         std::vector<std::string> list;
-        const double effective = bonds->diffusion_bonds().weights().effective_conductivity();
+        const double effective = bonds().diffusion_bonds().weights().effective_conductivity();
         if (std::abs(effective - 1.) > tolerable_conductivity_error)
           list.push_back(
             "complete families conduct " + rounded_text(effective, 6) +
@@ -385,17 +387,22 @@ namespace PeriDeal
             ", which is right for what flows along the interface; 'Interface rule = harmonic' in section "
             "'Material' is right for what crosses it, as around inclusions.");
         for (const std::string &note :
-             {note_on_cut_families(scene, bonds->diffusion_bonds().weights()), doubt})
+             {note_on_cut_families(scene, bonds().diffusion_bonds().weights()), doubt})
           if (!note.empty())
             list.push_back(note);
         return list;
       }
 
     private:
+      const ExtendedBondTerm<dim> &bonds() const
+      {
+        return bonds_of(*diffusion);
+      }
+
       static constexpr double much = 3.;
 
-      std::unique_ptr<BondOperator<dim>> bonds;
-      std::string                        doubt; // about the surface correction
+      std::unique_ptr<FieldOperator<dim>> diffusion;
+      std::string                         doubt; // about the surface correction
     };
   } // namespace
 

@@ -9,8 +9,6 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/laws/crack_conductance.h>
 #include <perideal/laws/lattice_family.h>
-#include <perideal/operators/diffusion/bond_operator.h>
-#include <perideal/operators/diffusion/fem_operator.h>
 #include <perideal/problems/diffusion_problem.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/lists.h>

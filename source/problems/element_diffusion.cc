@@ -10,7 +10,7 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/coupling/coupling.h>
-#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/diffusion/cell_term.h>
 #include <perideal/scene/lists.h>
 
 #include "diffusion_parts.h"
@@ -117,14 +117,14 @@ namespace PeriDeal
       {
         number_unknowns();
         build_operator();
-        doubts = notes_on_cells(handler, scene, fem->cut_cells());
+        doubts = notes_on_cells(handler, scene, cells().cut_cells());
         if (model == ModelKind::coupled && scene.coupling.certificate)
           certify();
       }
 
-      FEMOperator<dim> &op() const override
+      FieldOperator<dim> &op() const override
       {
-        return *fem;
+        return *diffusion;
       }
 
       void set_initial_value(Vector &u) const override
@@ -142,9 +142,9 @@ namespace PeriDeal
             integrate([](const Point<dim> &) { return 1.; }, volumes);
             if (scene.domain.coarsening.times > 0)
               {
-                fem->hanging_nodes().condense(u);
-                fem->hanging_nodes().condense(volumes);
-                fem->hanging_nodes().set(volumes, 1.);
+                cells().hanging_nodes().condense(u);
+                cells().hanging_nodes().condense(volumes);
+                cells().hanging_nodes().set(volumes, 1.);
               }
             for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
               u.local_element(i) /= volumes.local_element(i);
@@ -160,14 +160,14 @@ namespace PeriDeal
       {
         solution.update_ghost_values();
         const RecoveryIndicators found =
-          recovery_indicators<dim>(handler, scene.material, fem->cut_cells(), solution);
+          recovery_indicators<dim>(handler, scene.material, cells().cut_cells(), solution);
         solution.set_ghost_state(false);
         return found;
       }
 
       void before_remesh() override
       {
-        heat_before = fem->heat(solution);
+        heat_before = diffusion->heat(solution);
         solution.update_ghost_values();
         transfer = std::make_unique<Transfer>(handler);
         transfer->prepare_for_coarsening_and_refinement(solution);
@@ -175,23 +175,24 @@ namespace PeriDeal
 
       void rebuild(const double t) override
       {
-        const unsigned long long applications = fem->n_applications();
-        fem.reset();
+        const unsigned long long applications = diffusion->n_applications();
+        diffusion.reset();
         on.forget();
         number_unknowns();
         build_operator(t);
-        fem->carry_over_applications(applications);
-        fem->initialize_vector(solution);
+        diffusion->carry_over_applications(applications);
+        diffusion->initialize_vector(solution);
       }
 
       double move_solution(const double t, const bool steady) override
       {
         transfer->interpolate(solution);
         transfer.reset();
-        fem->hanging_nodes().interpolate(solution);
-        const double kept = fem->heat(solution), lost = heat_before - kept;
-        fem->distribute(solution, t); // what new nodes on Dirichlet sides get comes from outside
-        const double came = fem->heat(solution) - kept;
+        cells().hanging_nodes().interpolate(solution);
+        const double kept = diffusion->heat(solution), lost = heat_before - kept;
+        diffusion->distribute(solution,
+                              t); // what new nodes on Dirichlet sides get comes from outside
+        const double came = diffusion->heat(solution) - kept;
         if (!steady)
           give_heat(lost, t);
         return came;
@@ -201,18 +202,18 @@ namespace PeriDeal
       {
         VectorField<dim> flux;
         for (Vector &component : flux)
-          fem->initialize_vector(component);
+          diffusion->initialize_vector(component);
         std::vector<OutputField> fields;
         const std::string        flux_name = names_of(scene.general.physics).flux;
         if (model == ModelKind::finite_elements)
           {
-            element_heat_flux<dim>(handler, scene.material, fem->cut_cells(), u, flux);
+            element_heat_flux<dim>(handler, scene.material, cells().cut_cells(), u, flux);
             fields.push_back(vector_field<dim>(flux_name, flux));
           }
         else
           {
             VectorField<dim> one_sided = flux;
-            coupled_heat_flux<dim>(*fem, u, flux, one_sided);
+            coupled_heat_flux<dim>(cells(), u, flux, one_sided);
             fields.push_back(vector_field<dim>(flux_name, flux));
             fields.push_back(vector_field<dim>(flux_name + "_one_sided", one_sided));
             add_bond_fields(u, fields);
@@ -283,7 +284,7 @@ namespace PeriDeal
           {"capacity", scene.finite_elements.consistent_capacity ? "consistent" : "lumped"}};
         if (model != ModelKind::finite_elements)
           {
-            for (const auto &setting : this->bond_settings(fem->bonds().families()))
+            for (const auto &setting : this->bond_settings(cells().bonds().families()))
               if (setting.first != "boundary treatment" || model == ModelKind::peridynamics)
                 list.push_back(setting);
             list.emplace_back("coupling",
@@ -293,7 +294,7 @@ namespace PeriDeal
                               model == ModelKind::coupled ? scene.coupling.zone_text() :
                                                             "everywhere");
             list.emplace_back("share of the body in the zone",
-                              rounded_text(100. * fem->bonds().zone_share(), 6) + " %");
+                              rounded_text(100. * cells().bonds().zone_share(), 6) + " %");
           }
         else if (scene.peridynamics.scales_beside_cracks() && scene.cracks.cut_pairs())
           list.emplace_back("surface correction", "crack scaling");
@@ -307,6 +308,11 @@ namespace PeriDeal
 
     private:
       using Transfer = parallel::distributed::SolutionTransfer<dim, Vector>;
+
+      const CellTerm<dim> &cells() const
+      {
+        return cells_of(*diffusion);
+      }
 
       void number_unknowns()
       {
@@ -326,9 +332,9 @@ namespace PeriDeal
         std::array<Vector, dim> centers;
         for (unsigned int d = 0; d < dim; ++d)
           {
-            fem->initialize_vector(centers[d]);
+            diffusion->initialize_vector(centers[d]);
             integrate([d](const Point<dim> &p) { return p[d]; }, centers[d]);
-            fem->hanging_nodes().condense(centers[d]);
+            cells().hanging_nodes().condense(centers[d]);
           }
         Vector on_surface(u);
         on_surface = 0.;
@@ -377,12 +383,12 @@ namespace PeriDeal
                 share(i) = 1.;
             }
         share.compress(VectorOperation::max);
-        fem->clear_constrained(share);
-        fem->hanging_nodes().interpolate(share);
-        const double capacity = fem->heat(share);
+        diffusion->clear_constrained(share);
+        cells().hanging_nodes().interpolate(share);
+        const double capacity = diffusion->heat(share);
         if (capacity > 0.)
           solution.add(lost / capacity, share);
-        fem->distribute(solution, t);
+        diffusion->distribute(solution, t);
       }
 
       void build_operator(const double start = 0.)
@@ -399,13 +405,13 @@ namespace PeriDeal
               zone.stay_in({{scene.domain.lower, scene.domain.upper}});
             coupling = make_coupling(*node_set, scene, zone, scheme());
           }
-        fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling), start);
+        diffusion = field_of_elements(handler, scene, std::move(coupling), start);
       }
 
       void certify()
       {
         Timings::Scope scope(this->timings, "certificate");
-        const auto     found = examine_coupling(*fem, fem->symmetric());
+        const auto     found = examine_coupling(*diffusion, diffusion->symmetric());
         if (scheme() == CouplingScheme::exchange) // of the others the user is told
           found.require_sound();
         this->certificate = std::make_shared<CouplingCertificate>(found);
@@ -424,12 +430,12 @@ namespace PeriDeal
         std::vector<typename Coupling<dim>::Bond> bonds;
         for (unsigned int i = 0; i < node_set->n_owned(); ++i)
           {
-            zone[0].local_element(i)   = fem->bonds().in_zone(i);
+            zone[0].local_element(i)   = cells().bonds().in_zone(i);
             volume[0].local_element(i) = node_set->volume(i);
             cut[0].local_element(i)    = 0.;
-            if (!fem->bonds().families().near_crack(i))
+            if (!cells().bonds().families().near_crack(i))
               continue;
-            fem->bonds().bonds_of(i, bonds);
+            cells().bonds().bonds_of(i, bonds);
             double all = 0., gone = 0.;
             for (const auto &bond : bonds)
               {
@@ -490,12 +496,12 @@ namespace PeriDeal
             }
       }
 
-      const ModelKind                   model;
-      FE_Q<dim>                         element;
-      std::unique_ptr<FEMOperator<dim>> fem;
-      std::vector<std::string>          doubts;   // about cells at the start
-      std::unique_ptr<Transfer>         transfer; // while the mesh changes
-      double                            heat_before = 0.;
+      const ModelKind                     model;
+      FE_Q<dim>                           element;
+      std::unique_ptr<FieldOperator<dim>> diffusion;
+      std::vector<std::string>            doubts;   // about cells at the start
+      std::unique_ptr<Transfer>           transfer; // while the mesh changes
+      double                              heat_before = 0.;
     };
   } // namespace
 

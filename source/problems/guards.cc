@@ -459,7 +459,10 @@ namespace PeriDeal
   }
 
 
-  std::string cause_in_step(const Stepper &stepper, Operator &op, const Vector &u, const Trip &trip)
+  std::string cause_in_step(const Stepper     &stepper,
+                            DiffusionOperator &op,
+                            const Vector      &u,
+                            const Trip        &trip)
   {
     if (trip.monitor == "solver" || !std::isfinite(stable_step(stepper.name(), 1.)) ||
         !extent_of(u).finite)

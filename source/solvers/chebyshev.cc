@@ -86,7 +86,7 @@ namespace PeriDeal
     class Chebyshev : public Stepper
     {
     public:
-      Chebyshev(Operator &op, const StepperOptions &options)
+      Chebyshev(DiffusionOperator &op, const StepperOptions &options)
         : op(op)
         , dt(options.time_step)
         , tolerance(0.1 * options.tolerance)
@@ -235,7 +235,7 @@ namespace PeriDeal
         u.add(tau, sum);
       }
 
-      Operator           &op;
+      DiffusionOperator  &op;
       const double        dt, tolerance;
       Vector              last, now, image, sum;
       std::vector<double> inverse; // of the capacity
@@ -245,7 +245,7 @@ namespace PeriDeal
   } // namespace
 
 
-  std::unique_ptr<Stepper> make_chebyshev(Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_chebyshev(DiffusionOperator &op, const StepperOptions &options)
   {
     return std::make_unique<Chebyshev>(op, options);
   }

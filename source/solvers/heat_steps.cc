@@ -7,7 +7,7 @@
 
 namespace PeriDeal
 {
-  double sum_of_held(const Operator &op, const Vector &y, Vector &work)
+  double sum_of_held(const DiffusionOperator &op, const Vector &y, Vector &work)
   {
     work = y;
     op.clear_constrained(work);
@@ -18,7 +18,7 @@ namespace PeriDeal
   }
 
 
-  HeldHeat::HeldHeat(const Operator &op)
+  HeldHeat::HeldHeat(const DiffusionOperator &op)
     : op(op)
     , needed(!op.capacity_depends_on_solution() &&
              (!op.capacity_is_diagonal() || op.depends_on_time() || !op.symmetric()))
@@ -52,7 +52,7 @@ namespace PeriDeal
   }
 
 
-  ConservativeStep::ConservativeStep(const Operator &op)
+  ConservativeStep::ConservativeStep(const DiffusionOperator &op)
     : op(op)
   {
     if (needed())

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/interface/operator.h>
+#include <perideal/operators/interface/diffusion_operator.h>
 #include <perideal/solvers/heat_steps.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/step_tools.h>
@@ -35,7 +35,7 @@ namespace PeriDeal
      * the capacity of the chord has more than that of the operator, or nullptr while tangents may
      * do.
      */
-    const Vector *see(const Operator &op, const Vector &iterate, const Vector &heat)
+    const Vector *see(const DiffusionOperator &op, const Vector &iterate, const Vector &heat)
     {
       constexpr unsigned int by_tangents = 4;
       ++n_seen;
@@ -80,7 +80,7 @@ namespace PeriDeal
   class ImplicitStepper : public Stepper
   {
   public:
-    ImplicitStepper(Operator &op, const StepperOptions &options, const std::string &method)
+    ImplicitStepper(DiffusionOperator &op, const StepperOptions &options, const std::string &method)
       : op(op)
       , fixed(options.time_step > 0.)
       , method(method)
@@ -176,11 +176,11 @@ namespace PeriDeal
     /** SDIRK2 (gamma = 1 - 1/sqrt 2, L-stable) into `next`; the stage rates into k1, k2. */
     void sdirk2(const Vector &u, const double t, const double h, Vector &k1, Vector &k2);
 
-    Operator  &op;
-    const bool fixed; // steps, as far as rounds allow
-    Vector     next, error, base;
-    Vector     known, taken; // see solve_stage(); what the unknowns took up in the last step
-    double     step_heat = 0.;
+    DiffusionOperator &op;
+    const bool         fixed; // steps, as far as rounds allow
+    Vector             next, error, base;
+    Vector known, taken; // see solve_stage(); what the unknowns took up in the last step
+    double step_heat = 0.;
 
   private:
     static constexpr unsigned long long most_parts = 1ULL << 16;

@@ -15,7 +15,7 @@ namespace PeriDeal
     class SDIRK2 : public ImplicitStepper
     {
     public:
-      SDIRK2(Operator &op, const StepperOptions &options)
+      SDIRK2(DiffusionOperator &op, const StepperOptions &options)
         : ImplicitStepper(op, options, "sdirk2")
       {
         op.initialize_vector(k1);
@@ -43,7 +43,7 @@ namespace PeriDeal
     class TwoStep : public ImplicitStepper
     {
     public:
-      TwoStep(Operator &op, const StepperOptions &options, const std::string &method)
+      TwoStep(DiffusionOperator &op, const StepperOptions &options, const std::string &method)
         : ImplicitStepper(op, options, method)
       {
         for (Vector *v : {&previous, &oldest, &k1, &k2})
@@ -120,7 +120,7 @@ namespace PeriDeal
     class BDF2 : public TwoStep
     {
     public:
-      BDF2(Operator &op, const StepperOptions &options)
+      BDF2(DiffusionOperator &op, const StepperOptions &options)
         : TwoStep(op, options, "bdf2")
       {}
 
@@ -148,7 +148,7 @@ namespace PeriDeal
     class CrankNicolson : public TwoStep
     {
     public:
-      CrankNicolson(Operator &op, const StepperOptions &options)
+      CrankNicolson(DiffusionOperator &op, const StepperOptions &options)
         : TwoStep(op, options, "crank nicolson")
         , solver_tolerance(options.solver_tolerance)
         , max_iterations(options.max_iterations)
@@ -210,17 +210,17 @@ namespace PeriDeal
   } // namespace
 
 
-  std::unique_ptr<Stepper> make_sdirk2(Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_sdirk2(DiffusionOperator &op, const StepperOptions &options)
   {
     return std::make_unique<SDIRK2>(op, options);
   }
 
-  std::unique_ptr<Stepper> make_bdf2(Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_bdf2(DiffusionOperator &op, const StepperOptions &options)
   {
     return std::make_unique<BDF2>(op, options);
   }
 
-  std::unique_ptr<Stepper> make_crank_nicolson(Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_crank_nicolson(DiffusionOperator &op, const StepperOptions &options)
   {
     return std::make_unique<CrankNicolson>(op, options);
   }

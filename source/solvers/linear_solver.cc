@@ -351,7 +351,7 @@ namespace PeriDeal
   }
 
 
-  unsigned int solve_steady(Operator          &op,
+  unsigned int solve_steady(DiffusionOperator &op,
                             Vector            &u,
                             const double       t,
                             const double       tolerance,

@@ -26,7 +26,7 @@ namespace PeriDeal
     {
     public:
       /** @param n_stages of every step; 0: as many as it needs */
-      RKC2(Operator &op, const StepperOptions &options, const unsigned int n_stages)
+      RKC2(DiffusionOperator &op, const StepperOptions &options, const unsigned int n_stages)
         : op(op)
         , given_stages(n_stages)
         , fixed(options.time_step > 0.)
@@ -274,7 +274,7 @@ namespace PeriDeal
         throw not_finite(message.str(), t);
       }
 
-      Operator           &op;
+      DiffusionOperator  &op;
       const unsigned int  given_stages;
       const bool          fixed;
       double              dt;
@@ -289,13 +289,13 @@ namespace PeriDeal
   } // namespace
 
 
-  std::unique_ptr<Stepper> make_rkc2(Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_rkc2(DiffusionOperator &op, const StepperOptions &options)
   {
     return std::make_unique<RKC2>(op, options, 0);
   }
 
 
-  std::unique_ptr<Stepper> make_rkc2(Operator             &op,
+  std::unique_ptr<Stepper> make_rkc2(DiffusionOperator    &op,
                                      const StepperOptions &options,
                                      const unsigned int    n_stages)
   {

@@ -23,7 +23,7 @@ namespace PeriDeal
     class FixedStepper : public Stepper
     {
     public:
-      FixedStepper(Operator             &op,
+      FixedStepper(DiffusionOperator    &op,
                    const StepperOptions &options,
                    const std::string    &method,
                    const double          share_of_bound)
@@ -135,7 +135,7 @@ namespace PeriDeal
 
       virtual void step(Vector &u, const double t, const double size) = 0;
 
-      Operator &op;
+      DiffusionOperator &op;
 
     private:
       const std::string method;
@@ -155,7 +155,7 @@ namespace PeriDeal
     class Euler : public FixedStepper
     {
     public:
-      Euler(Operator &op, const StepperOptions &options)
+      Euler(DiffusionOperator &op, const StepperOptions &options)
         : FixedStepper(op, options, "euler", 0.9)
       {
         op.initialize_vector(next);
@@ -192,7 +192,7 @@ namespace PeriDeal
     class RK4 : public FixedStepper
     {
     public:
-      RK4(Operator &op, const StepperOptions &options)
+      RK4(DiffusionOperator &op, const StepperOptions &options)
         : FixedStepper(op, options, "rk4", 0.95)
       {
         for (Vector *v : {&rate, &stage, &next_stage, &sum})
@@ -254,13 +254,13 @@ namespace PeriDeal
   } // namespace
 
 
-  std::unique_ptr<Stepper> make_euler(Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_euler(DiffusionOperator &op, const StepperOptions &options)
   {
     return std::make_unique<Euler>(op, options);
   }
 
 
-  std::unique_ptr<Stepper> make_rk4(Operator &op, const StepperOptions &options)
+  std::unique_ptr<Stepper> make_rk4(DiffusionOperator &op, const StepperOptions &options)
   {
     return std::make_unique<RK4>(op, options);
   }

@@ -18,9 +18,9 @@ namespace PeriDeal
   {
     struct Method
     {
-      std::string                                                                 name;
-      std::function<std::unique_ptr<Stepper>(Operator &, const StepperOptions &)> make;
-      bool                                                                        is_explicit;
+      std::string                                                                          name;
+      std::function<std::unique_ptr<Stepper>(DiffusionOperator &, const StepperOptions &)> make;
+      bool is_explicit;
     };
 
     const std::vector<Method> &methods()
@@ -29,7 +29,9 @@ namespace PeriDeal
         {"euler", make_euler, true},
         {"rk4", make_rk4, true},
         {"rkc2",
-         [](Operator &op, const StepperOptions &options) { return make_rkc2(op, options); },
+         [](DiffusionOperator &op, const StepperOptions &options) {
+           return make_rkc2(op, options);
+         },
          true},
         {"chebyshev", make_chebyshev, true},
         {"crank nicolson", make_crank_nicolson, false},
@@ -89,7 +91,7 @@ namespace PeriDeal
   }
 
 
-  void refuse_unstable_step(const std::string &name, const Operator &op, const double dt)
+  void refuse_unstable_step(const std::string &name, const DiffusionOperator &op, const double dt)
   {
     if (dt <= 0. || stable_step(name, 1.) == std::numeric_limits<double>::infinity())
       return;
@@ -132,7 +134,7 @@ namespace PeriDeal
   }
 
 
-  std::string choose_stepper(const Operator &op)
+  std::string choose_stepper(const DiffusionOperator &op)
   {
     if (!op.capacity_is_diagonal())
       return "sdirk2";
@@ -148,7 +150,7 @@ namespace PeriDeal
 
 
   std::unique_ptr<Stepper> make_stepper(const std::string    &name,
-                                        Operator             &op,
+                                        DiffusionOperator    &op,
                                         const StepperOptions &options)
   {
     const std::string wanted = name == "auto" ? choose_stepper(op) : name;

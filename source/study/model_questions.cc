@@ -164,7 +164,7 @@ namespace PeriDeal
       Json answer;
       with_model(text, [&](auto &problem, const auto &) {
         with_formulas(text.communicator, [&] {
-          Operator    &op    = problem.op();
+          auto        &op    = dynamic_cast<DiffusionOperator &>(problem.op());
           const Vector field = fast_field(problem), start = problem.state();
           Stepping     stepping;
           stepping.whole = stepping.left = op.spectrum().sharp;
@@ -215,7 +215,7 @@ namespace PeriDeal
       CouplingCertificate found;
       with_model(text, [&](auto &problem, const auto &scene) {
         constexpr int dim = std::decay_t<decltype(scene.domain.lower)>::dimension;
-        const auto   &op  = dynamic_cast<const FEMOperator<dim> &>(problem.op());
+        const auto   &op  = dynamic_cast<const FieldOperator<dim> &>(problem.op());
         found             = examine_coupling(op, op.symmetric());
       });
       return {{"lowest remainder", number(found.lowest_remainder)},
@@ -242,7 +242,7 @@ namespace PeriDeal
             n = make_static_solver("linear", *op, options)->solve(u, 0.);
           }
         else
-          n = solve_steady(problem.op(),
+          n = solve_steady(dynamic_cast<DiffusionOperator &>(problem.op()),
                            u,
                            0.,
                            scene.solver.tolerance,

@@ -27,7 +27,7 @@ namespace PeriDeal
 
 
     std::unique_ptr<Stepper> make_fixed(const ExplicitMethod &method,
-                                        Operator             &op,
+                                        DiffusionOperator    &op,
                                         const double          step)
     {
       StepperOptions options;
@@ -120,7 +120,7 @@ namespace PeriDeal
   }
 
 
-  Growth growth_of_diffusion(Operator             &op,
+  Growth growth_of_diffusion(DiffusionOperator    &op,
                              const Vector         &start,
                              const Vector         &disturbance,
                              const ExplicitMethod &method,

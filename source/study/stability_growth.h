@@ -41,7 +41,7 @@ namespace PeriDeal
    * the difference of two runs, one with it and one without, so that loads and values at sides do
    * not count. Collective.
    */
-  Growth growth_of_diffusion(Operator             &op,
+  Growth growth_of_diffusion(DiffusionOperator    &op,
                              const Vector         &start,
                              const Vector         &disturbance,
                              const ExplicitMethod &method,

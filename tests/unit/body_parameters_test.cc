@@ -10,8 +10,8 @@
 
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/operators/diffusion/bond_operator.h>
-#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/diffusion/cell_term.h>
+#include <perideal/operators/diffusion/extended_bond_term.h>
 #include <perideal/operators/solid/elastic_elements.h>
 #include <perideal/operators/solid/state_operator.h>
 #include <perideal/scene/scene.h>
@@ -100,11 +100,11 @@ TEST(BodyParameters, of_heat)
     {Expression([](const dealii::Point<3> &p, const double) { return p[1]; }, false)});
   body.boundary_conditions.let_in("Convection", 1, {2., 3.});
 
-  Nodes<2>        of_scene(square.dofs, scene), of_body(square.dofs, body);
-  BondOperator<2> a(of_scene, scene), b(of_body, body);
-  expect_same("bonds", a, b);
-  const FEMOperator<2> c(square.dofs, scene), d(square.dofs, body);
-  expect_same("elements", c, d);
+  Nodes<2> of_scene(square.dofs, scene), of_body(square.dofs, body);
+  expect_same("bonds", *field_of_bonds(of_scene, scene), *field_of_bonds(of_body, body));
+  expect_same("elements",
+              *field_of_elements<2>(square.dofs, scene),
+              *field_of_elements<2>(square.dofs, body));
 }
 
 

@@ -115,7 +115,7 @@ namespace PeriDeal
   {
     BondedSquare body(Settings{{"Coupling/Zone", "everywhere"}});
     ASSERT_TRUE(body.bonds.apart());
-    MatrixTerm cells(false, true);
+    MatrixTerm<2> cells(false, true);
     cells.matrix.copy_from(body.matrix());
     body.bonds.add_to(cells.matrix); // nothing
     // What cells leave: something on the diagonal of some rows, and round-off elsewhere.
@@ -143,9 +143,9 @@ namespace PeriDeal
           sum += bond.weight;
         EXPECT_NEAR(body.bonds.sum_of(i), sum, 1e-12 * sum);
       }
-    const double   accuracy = 1e-12 * expected.linfty_norm();
-    const Term::At at{u, 0.};
-    double         entering = 0.;
+    const double      accuracy = 1e-12 * expected.linfty_norm();
+    const Term<2>::At at{u, 0.};
+    double            entering = 0.;
     body.bonds.begin(at, entering);
     EXPECT_EQ(entering, 0.);
     body.bonds.set_then(y, at, [&](const unsigned int begin, const unsigned int end) {
@@ -171,12 +171,10 @@ namespace PeriDeal
     // Both say what their matrices have.
     Vector              diagonal = body.vector();
     std::vector<double> row_sums(body.all.size(), 0.);
-    body.bonds.add_diagonal(diagonal, body.all);
-    body.bonds.add_row_sums(row_sums, body.all);
+    body.bonds.add_rows(diagonal, row_sums, body.all);
     for (const unsigned int i : body.all)
       EXPECT_EQ(row_sums[i], 2. * diagonal.local_element(i));
-    cells.add_diagonal(diagonal, body.all);
-    cells.add_row_sums(row_sums, body.all);
+    cells.add_rows(diagonal, row_sums, body.all);
     for (const unsigned int i : body.all)
       {
         EXPECT_DOUBLE_EQ(diagonal.local_element(i), body.bonds.sum_of(i) + left(i));
@@ -199,7 +197,7 @@ namespace PeriDeal
     const auto   before = body.bonds.rows(body.all);
     ChangeSet<2> change;
     change.to        = history.representative(1.);
-    const auto old   = body.bonds.apply_change(change, body.all);
+    const auto old   = body.bonds.change_bonds(change, body.all);
     const auto after = body.bonds.rows(body.all);
     EXPECT_EQ(old, before);
     body.bonds.add_changes(body.all, old, matrix, touched);

@@ -74,8 +74,7 @@ namespace
     {
       Scene<dim> &scene          = this->scene;
       scene.broken_bonds_conduct = 0.;
-      this->bonds.reset();
-      this->fem.reset();
+      this->field.reset();
       const bool alone = model == ModelKind::peridynamics;
       this->nodes      = std::make_unique<Nodes<dim>>(this->handler,
                                                  scene.domain,
@@ -83,15 +82,15 @@ namespace
                                                  alone ? scene.peridynamics.sampling.nodal_volume :
                                                               NodalVolume::partial);
       if (alone)
-        this->bonds = std::make_unique<BondOperator<dim>>(*this->nodes, scene);
+        this->field = field_of_bonds(*this->nodes, scene);
       else
-        this->fem = std::make_unique<FEMOperator<dim>>(
-          this->handler,
-          scene,
-          make_coupling(*this->nodes,
-                        scene,
-                        Zone<dim>(scene.coupling, scene.horizon()),
-                        CouplingScheme::exchange));
+        this->field =
+          field_of_elements<dim>(this->handler,
+                                 scene,
+                                 make_coupling(*this->nodes,
+                                               scene,
+                                               Zone<dim>(scene.coupling, scene.horizon()),
+                                               CouplingScheme::exchange));
     }
   };
 
@@ -99,15 +98,10 @@ namespace
   template <int dim>
   const Families<dim> &families_of(const Problem<dim> &problem)
   {
-    return problem.fem ? problem.fem->bonds().families() :
-                         problem.bonds->diffusion_bonds().families();
-  }
-
-
-  template <int dim>
-  bool follows(const Problem<dim> &problem, const ChangeSet<dim> &damage)
-  {
-    return problem.fem ? problem.fem->follow(damage) : problem.bonds->follow(damage);
+    const auto &term = problem.op().first_term();
+    if (const auto *const cells = dynamic_cast<const CellTerm<dim> *>(&term))
+      return cells->bonds().families();
+    return bonds_of(problem.op()).diffusion_bonds().families();
   }
 
 
@@ -135,7 +129,7 @@ namespace
           const Problem<2>   cut(settings + cracked);
           const auto         damage = as_damage(families_of(cut));
           EXPECT_GT(damage.broken.size(), 50u);
-          EXPECT_LT(gap(whole, cut, [&] { return follows(whole, damage); }), 1e-14)
+          EXPECT_LT(gap(whole, cut, [&] { return whole.op().follow(damage); }), 1e-14)
             << form << ", " << nodes;
         }
   }
@@ -150,14 +144,14 @@ namespace
                                                     {"Peridynamics/Operator form", form}};
         const Following<2> whole(settings + shorter);
         const Problem<2>   cut(settings + cracked);
-        const auto         damage = as_damage(cut.bonds->diffusion_bonds().families());
+        const auto         damage = as_damage(bonds_of(cut.op()).diffusion_bonds().families());
         const auto         follow = [&] {
           for (std::size_t k = 0; k < damage.broken.size(); k += 40)
             {
               const std::size_t end  = std::min(k + 40, damage.broken.size());
               ChangeSet<2>      some = damage;
               some.broken.assign(damage.broken.begin() + k, damage.broken.begin() + end);
-              EXPECT_TRUE(whole.bonds->follow(some));
+              EXPECT_TRUE(whole.op().follow(some));
             }
           return true;
         };
@@ -175,7 +169,7 @@ namespace
         const Following<2> whole(settings, ModelKind::coupled);
         const Problem<2>   cut(settings + cracked, ModelKind::coupled);
         const auto         damage = as_damage(families_of(cut));
-        EXPECT_LT(gap(whole, cut, [&] { return follows(whole, damage); }), 1e-12) << zone;
+        EXPECT_LT(gap(whole, cut, [&] { return whole.op().follow(damage); }), 1e-12) << zone;
       }
   }
 
@@ -195,7 +189,7 @@ namespace
     };
     const double whole = heat(made), expected = heat(given);
     EXPECT_LT(expected, 0.99 * whole);
-    EXPECT_TRUE(follows(made, as_damage(families_of(given))));
+    EXPECT_TRUE(made.op().follow(as_damage(families_of(given))));
     return heat(made) / expected - 1.;
   }
 
@@ -259,7 +253,7 @@ namespace
       return std::cos(3. * (p[0] - 0.5)) + std::abs(p[0] - 0.5) * (1. + p[1]);
     });
     const Vector before = body.product(x);
-    EXPECT_TRUE(body.fem->follow(damage));
+    EXPECT_TRUE(body.op().follow(damage));
     return largest_difference(body.product(x), before);
   }
 
@@ -297,16 +291,10 @@ namespace
                                            {"Peridynamics/Horizon ratio", "3"},
                                            {"Cracks/Growth step", "0.02"}};
         const Following<2> body(settings + start, model), built(settings + grown, model);
-        const auto         families = [&, model = model ](const Problem<2> &problem) -> const auto &
-        {
-          return model == ModelKind::coupled ? problem.fem->bonds().families() :
-                                               problem.bonds->diffusion_bonds().families();
-        };
-        const auto follow = [&, model = model](const Problem<2> &problem) {
-          const ChangeSet<2> damage = freeing(families(problem), free);
+        const auto         follow = [&](const Problem<2> &problem) {
+          const ChangeSet<2> damage = freeing(families_of(problem), free);
           EXPECT_GT(damage.broken.size(), 20u);
-          return model == ModelKind::coupled ? problem.fem->follow(damage) :
-                                               problem.bonds->follow(damage);
+          return problem.op().follow(damage);
         };
         EXPECT_TRUE(follow(body));
         for (double t = 0.; t < 1.; t = body.op().next_event(t))

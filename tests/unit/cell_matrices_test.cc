@@ -65,7 +65,7 @@ namespace PeriDeal
 
     const auto history = scene.crack_history();
     cells.cut().set(history.pieces(0.), history.transmission(0.));
-    EXPECT_EQ(cells.cut().flags(), problem.fem->cut_cells());
+    EXPECT_EQ(cells.cut().flags(), cells_of(problem.op()).cut_cells());
     cells.find_factors(problem.vector());
     EXPECT_FALSE(factors.empty());
     unsigned int n_cut = 0;
@@ -89,7 +89,7 @@ namespace PeriDeal
     EXPECT_GT(sum_of_all(n_cut), 3.);
     const Vector u = problem.values(bumpy<2>);
     Vector       y = problem.vector();
-    problem.fem->multiply(y, u);
+    problem.op().multiply(y, u);
     EXPECT_LT(relative_difference(product(cells, problem, u), y), 1e-13);
 
     // In the field y heat flows down through the crack: by the pairs that it separates.

@@ -184,7 +184,7 @@ TEST(CrackIntensity, families_know_cubic_fields_beside_a_crack)
       const Problem<2>   problem(cracked + Settings{{"Domain/Nodes", nodes_at},
                                                   {"Peridynamics/Horizon ratio", "3"},
                                                   {"Peridynamics/Boundary treatment", "none"}});
-      const auto        &families = problem.bonds->diffusion_bonds().families();
+      const auto        &families = bonds_of(problem.op()).diffusion_bonds().families();
       const Nodes<2>    &nodes    = families.nodes();
       FamilyFit<2>       fit(families);
       unsigned long long n_beside = 0;

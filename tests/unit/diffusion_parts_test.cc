@@ -170,8 +170,7 @@ namespace PeriDeal
     EXPECT_EQ(largest_difference(whole, y), 0.);
     // Its matrix is diagonal.
     std::vector<double> sums(n, 0.);
-    sides.add_diagonal(diagonal, body.all);
-    sides.add_row_sums(sums, body.all);
+    sides.add_rows(diagonal, sums, body.all);
     for (const unsigned int i : body.all)
       {
         EXPECT_DOUBLE_EQ(diagonal.local_element(i) * u.local_element(i), y.local_element(i));
@@ -227,8 +226,8 @@ namespace PeriDeal
                               {"Cracks/Growth", "2: 0, 0,0.5"},
                               {"Time/End time", "1"}});
     const auto         &fictitious = body.bonds.neighbors().outside();
-    ExtendedBondTerm<2> term(body.bonds, body.constraints, body.problem.scene.boundary_conditions);
-    term.take(make_stored_form(body.bonds), body.nodes.partitioner());
+    ExtendedBondTerm<2> term(body.nodes, body.problem.scene);
+    term.take_bonds();
     const Vector               u = body.field([](const Point<2> &p) { return 1.5 + 2. * p[0]; });
     const std::vector<double> &values = term.values({u, 0.5});
     // The sum over the bonds with fictitious nodes, as they are now.
@@ -270,15 +269,18 @@ namespace PeriDeal
     EXPECT_NEAR(sum_of_all(balance.sides["top"]), 0., 1e-12 * size);
 
     // Its sums are those of the bonds when they were last told to have changed.
-    const auto   history = body.problem.scene.crack_history();
-    ChangeSet<2> change;
-    change.to = history.representative(1.);
-    body.bonds.cracks().apply_change(change);
+    const auto history = body.problem.scene.crack_history();
+    const auto change  = history.change(body.bonds.cracks().now(), 1.);
+    ASSERT_TRUE(change);
+    body.bonds.cracks().apply_change(*change);
     const Vector              w      = body.field(bumpy<2>);
     const std::vector<double> of_w   = term.values({w, 0.5});
     double                    direct = 0.;
     const double              kept   = flow(w);
-    term.update_rows(body.all);
+    const Mended              mended = term.apply_change(*change);
+    EXPECT_FALSE(mended.stiffer); // bonds are cut
+    EXPECT_GT(sum_of_all(mended.rows.size()), 4u);
+    EXPECT_TRUE(std::is_sorted(mended.rows.begin(), mended.rows.end()));
     const double now = flow(w);
     for (const unsigned int i : body.all)
       for (const auto &bond : body.bonds_of(i))

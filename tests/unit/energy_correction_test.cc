@@ -28,8 +28,8 @@ namespace PeriDeal
     {
       const Problem<dim> plain(settings, ModelKind::peridynamics, MPI_COMM_SELF),
         corrected(settings + energy, ModelKind::peridynamics, MPI_COMM_SELF);
-      const DiffusionBonds<dim>                      &families = plain.bonds->diffusion_bonds();
-      const unsigned int                              n        = families.nodes().n_owned();
+      const DiffusionBonds<dim> &families = bonds_of(plain.op()).diffusion_bonds();
+      const unsigned int         n        = families.nodes().n_owned();
       std::vector<typename DiffusionBonds<dim>::Bond> bonds, found;
       std::vector<Tensor<1, dim>>                     g(n);
       for (unsigned int i = 0; i < n; ++i)
@@ -47,7 +47,7 @@ namespace PeriDeal
       for (unsigned int i = 0; i < n; ++i)
         {
           families.bonds_of(i, bonds);
-          corrected.bonds->diffusion_bonds().bonds_of(i, found);
+          bonds_of(corrected.op()).diffusion_bonds().bonds_of(i, found);
           ASSERT_EQ(bonds.size(), found.size());
           for (unsigned int b = 0; b < bonds.size(); ++b)
             {

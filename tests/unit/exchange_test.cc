@@ -65,14 +65,14 @@ namespace
             shape + patch<dim>("1 + 2*x + 3*y - 2.5*z", "0", zone, shape.back().second == "0.23") +
               Settings{{"Peridynamics/Horizon ratio", m}},
             ModelKind::coupled);
-          EXPECT_GT(problem.fem->size().bonds, 0u);
+          EXPECT_GT(problem.op().size().bonds, 0u);
           EXPECT_LT(patch_error(problem), 1e-13) << name << ", m = " << m;
-          EXPECT_LT(examine_coupling(*problem.fem, true).asymmetry, 1e-14) << name << ", m = " << m;
-          EXPECT_GT(problem.fem->lowest_remainder(), -1e-13) << name << ", m = " << m;
+          EXPECT_LT(examine_coupling(problem.op(), true).asymmetry, 1e-14) << name << ", m = " << m;
+          EXPECT_GT(cells_of(problem.op()).lowest_remainder(), -1e-13) << name << ", m = " << m;
           Vector one = problem.values([](const dealii::Point<dim> &) { return 1.; }), image = one;
-          problem.fem->multiply(image, one);
-          problem.fem->hanging_nodes().set(image, 0.);
-          EXPECT_LT(image.linfty_norm() / problem.fem->diagonal().linfty_norm(), 1e-13) << name;
+          problem.op().multiply(image, one);
+          cells_of(problem.op()).hanging_nodes().set(image, 0.);
+          EXPECT_LT(image.linfty_norm() / problem.op().diagonal().linfty_norm(), 1e-13) << name;
         }
   }
 
@@ -141,11 +141,10 @@ TEST(Exchange, linear_patch_with_bonds_across_levels)
                      NodalVolume::partial);
       auto       bonds =
         std::make_unique<MeshExchange<2, ConductingBonds<2>>>(nodes, problem.scene, Zone<2>());
-      problem.fem =
-        std::make_unique<FEMOperator<2>>(problem.handler, problem.scene, std::move(bonds));
+      problem.field = field_of_elements<2>(problem.handler, problem.scene, std::move(bonds));
       EXPECT_LT(patch_error(problem), 1e-13) << m;
-      EXPECT_LT(examine_coupling(*problem.fem, true).asymmetry, 1e-14) << m;
-      EXPECT_GT(problem.fem->lowest_remainder(), -1e-13) << m;
+      EXPECT_LT(examine_coupling(problem.op(), true).asymmetry, 1e-14) << m;
+      EXPECT_GT(cells_of(problem.op()).lowest_remainder(), -1e-13) << m;
     }
 }
 
@@ -172,7 +171,7 @@ TEST(Exchange, agrees_with_the_reference)
                                 {"Peridynamics/Horizon ratio", m},
                                 {"Coupling/Zone", zone}},
                                ModelKind::coupled);
-      EXPECT_EQ(problem.fem->size().bonds, n_bonds) << m << ' ' << zone;
+      EXPECT_EQ(problem.op().size().bonds, n_bonds) << m << ' ' << zone;
       // K itself: without its capacity, whose nodes on the sides are lighter.
 
       Vector x = problem.values(bumpy<2>), y = x;
@@ -180,7 +179,7 @@ TEST(Exchange, agrees_with_the_reference)
       for (unsigned int k = 0; k < 3000; ++k)
         {
           x /= x.l2_norm();
-          problem.fem->multiply(y, x);
+          problem.op().multiply(y, x);
           norm = y.l2_norm();
           x.swap(y);
         }
@@ -202,9 +201,9 @@ TEST(Exchange, both_forms_agree)
       const Settings   all = shape + Settings{{"Peridynamics/Surface correction", correction}};
       const Problem<2> form(all + Settings{{"Coupling/Zone", "everywhere"}}, ModelKind::coupled);
       const Problem<2> matrix(all + Settings{{"Coupling/Zone", "1"}}, ModelKind::coupled);
-      EXPECT_EQ(form.fem->size().form, "lattice");
-      EXPECT_EQ(matrix.fem->size().form, "matrix");
-      EXPECT_EQ(form.fem->size().bonds, matrix.fem->size().bonds);
+      EXPECT_EQ(form.op().size().form, "lattice");
+      EXPECT_EQ(matrix.op().size().form, "matrix");
+      EXPECT_EQ(form.op().size().bonds, matrix.op().size().bonds);
       const Vector a = form.residual(form.values(bumpy<2>)),
                    b = matrix.residual(matrix.values(bumpy<2>));
       EXPECT_LT(difference(form, a, matrix, b), 1e-13 * a.linfty_norm());
@@ -304,7 +303,7 @@ TEST(Couplings, splice_is_exact_for_quadratics)
       Settings{{"Coupling/Scheme", "splice"}},
     ModelKind::coupled);
   EXPECT_LT(patch_error(problem), 1e-12);
-  const CouplingCertificate found = examine_coupling(*problem.fem, false);
+  const CouplingCertificate found = examine_coupling(problem.op(), false);
   EXPECT_LT(found.quadratic, 1e-12);
   EXPECT_LT(found.cubic, 1e-12); // since families are symmetric
   EXPECT_GT(found.asymmetry, 1e-3);
@@ -322,7 +321,7 @@ TEST(Couplings, blending_is_symmetric_but_not_exact)
                    {"Coupling/Scheme", "blending"},
                    {"Coupling/Overlap", overlap}},
         ModelKind::coupled);
-      const CouplingCertificate found = examine_coupling(*problem.fem, true);
+      const CouplingCertificate found = examine_coupling(problem.op(), true);
       EXPECT_LT(found.asymmetry, 1e-14);
       EXPECT_GT(found.linear, 1e-5);
       EXPECT_LT(found.linear, 2e-2);
@@ -339,7 +338,7 @@ TEST(Couplings, certificate_of_exchange)
                              Settings{{"Cracks/Segments", "0.3,0.4 ; 0.7,0.55"},
                                       {"Boundary conditions/Dirichlet", "left: 1"}},
                            ModelKind::coupled);
-  const CouplingCertificate found = examine_coupling(*problem.fem, true);
+  const CouplingCertificate found = examine_coupling(problem.op(), true);
   EXPECT_EQ(found.fault(), "");
   EXPECT_LT(found.linear, 1e-13);
   EXPECT_GT(found.quadratic, 1e-8);

@@ -186,11 +186,10 @@ namespace PeriDeal
           harmonic_box(2, "3", "conical", 2, placement) +
           Settings{{"Peridynamics/Boundary treatment", "fictitious constant"},
                    {"Boundary conditions/Dirichlet", "left: 1 + t; right: 5 + y"}});
-        std::vector<double> outside;
-        Vector              u = problem.values([](const Point<2> &) { return 7.; });
+        const Vector u = problem.values([](const Point<2> &) { return 7.; });
         u.update_ghost_values();
-        problem.bonds->fictitious_values(u, 2., outside);
-        const auto &fictitious = problem.bonds->diffusion_bonds().neighbors().outside();
+        const std::vector<double> &outside = bonds_of(problem.op()).values({u, 2.});
+        const auto &fictitious = bonds_of(problem.op()).diffusion_bonds().neighbors().outside();
         for (unsigned int f = 0; f < fictitious.size(); ++f)
           {
             const Point<2> p = problem.nodes->lattice()->position(fictitious[f].site);
@@ -208,7 +207,7 @@ namespace PeriDeal
     for (const std::string placement : {"vertices", "cell centers"})
       {
         const Problem<2> problem(harmonic_box(2, "3", "conical", 2, placement) + mirror_box(2));
-        const auto      &families = problem.bonds->diffusion_bonds();
+        const auto      &families = bonds_of(problem.op()).diffusion_bonds();
         std::vector<typename DiffusionBonds<2>::Bond> bonds;
         for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
           {

@@ -54,9 +54,10 @@ namespace PeriDeal
         const Goal<2> goal = Goal<2>::value_at({0.75, 0.75});
         DoFHandler<2> dofs(mesh);
         dofs.distribute_dofs(FE_Q<2>(1));
-        n_dofs = dofs.n_dofs();
-        FEMOperator<2> op(dofs, body);
-        Vector         u;
+        n_dofs                 = dofs.n_dofs();
+        const auto        made = field_of_elements<2>(dofs, body);
+        FieldOperator<2> &op   = *made;
+        Vector            u;
         op.initialize_vector(u);
         solve_steady(op, u, 0., 1e-12, 1000);
         LinearSolver      solver(op, 1e-12, 1000);
@@ -66,9 +67,9 @@ namespace PeriDeal
         const QuadraticElements<2> elements(op, body);
         const GoalError            error = GoalErrors<2>(elements, solution, u).of(goal);
         const FieldError<2>        field(elements, solution, u);
-        FEMOperator<2>             fine(elements.dof_handler(), body);
+        const auto                 fine  = field_of_elements<2>(elements.dof_handler(), body);
         Vector                     finer = elements.quadratic_vector();
-        solve_steady(fine, finer, 0., 1e-12, 1000);
+        solve_steady(*fine, finer, 0., 1e-12, 1000);
         const Cracks<2> &cracks = body.cracks;
         Row              row;
         row.error     = 0.0334473 - error.value; // the value that step-14 has extrapolated

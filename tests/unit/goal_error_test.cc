@@ -35,9 +35,9 @@ namespace PeriDeal
       {
         solve_steady(problem.op(), u, 0., 1e-12, 2000);
         elements = std::make_unique<QuadraticElements<dim>>(
-          *problem.fem,
+          problem.op(),
           problem.scene,
-          model == ModelKind::coupled ? &problem.fem->bonds() : nullptr);
+          model == ModelKind::coupled ? &cells_of(problem.op()).bonds() : nullptr);
       }
 
       Problem<dim>                            problem;
@@ -84,16 +84,16 @@ namespace PeriDeal
                              const bool       with_quadratic,
                              const ModelKind  model = ModelKind::finite_elements)
     {
-      const Solved<dim>                 solved(test.settings + more, model);
-      const auto                       &scene = solved.problem.scene;
-      const GoalErrors<dim>             weighted(*solved.elements, solved.solve, solved.u);
-      const FieldError<dim>             corrected(*solved.elements, solved.solve, solved.u);
-      const DoFHandler<dim>            &fine_dofs = solved.elements->dof_handler();
-      std::unique_ptr<FEMOperator<dim>> fine;
-      Vector                            finer = solved.elements->quadratic_vector();
+      const Solved<dim>                   solved(test.settings + more, model);
+      const auto                         &scene = solved.problem.scene;
+      const GoalErrors<dim>               weighted(*solved.elements, solved.solve, solved.u);
+      const FieldError<dim>               corrected(*solved.elements, solved.solve, solved.u);
+      const DoFHandler<dim>              &fine_dofs = solved.elements->dof_handler();
+      std::unique_ptr<FieldOperator<dim>> fine;
+      Vector                              finer = solved.elements->quadratic_vector();
       if (with_quadratic)
         {
-          fine = std::make_unique<FEMOperator<dim>>(fine_dofs, scene);
+          fine = field_of_elements<dim>(fine_dofs, scene);
           solve_steady(*fine, finer, 0., 1e-12, 2000);
         }
       std::vector<Row> rows;
@@ -167,7 +167,7 @@ namespace PeriDeal
       const Solved<dim> solved(
         settings + Settings{{"Time/Steady", "true"}, {"Boundary conditions/Dirichlet", "left: 0"}});
       Vector v = solved.problem.values(f);
-      solved.problem.fem->hanging_nodes().interpolate(v);
+      cells_of(solved.problem.op()).hanging_nodes().interpolate(v);
       Vector w = solved.elements->recovered_bubbles(v);
       w += solved.elements->prolonged(v);
       std::map<types::global_dof_index, Point<dim>> places;

@@ -18,7 +18,7 @@ namespace PeriDeal
   namespace OperatorTests
   {
     /** Through all events to the end, t = 1. */
-    inline void grow(Operator &op)
+    inline void grow(DiffusionOperator &op)
     {
       for (double t = 0.; t < 1.; t = op.next_event(t))
         op.update(t);
@@ -63,7 +63,7 @@ namespace PeriDeal
     template <int dim>
     unsigned int expect_history_kept(const Problem<dim> &problem, const std::string &what)
     {
-      const Coupling<dim>     &coupling = problem.fem->bonds();
+      const Coupling<dim>     &coupling = cells_of(problem.op()).bonds();
       const Families<dim>     &families = coupling.families();
       const CrackHistory<dim> &history  = families.cracks().history();
       const bool               at_tips =

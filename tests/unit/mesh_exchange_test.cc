@@ -31,7 +31,8 @@ namespace
   template <int dim>
   double kept_share(const Problem<dim> &problem)
   {
-    return dynamic_cast<const MeshExchange<dim, ConductingBonds<dim>> &>(problem.fem->bonds())
+    return dynamic_cast<const MeshExchange<dim, ConductingBonds<dim>> &>(
+             cells_of(problem.op()).bonds())
       .kept_share();
   }
 
@@ -45,16 +46,16 @@ namespace
                                    "sin(4375.85*x + 1234.5*y + 777.7*z + 2) + 0.2"})
       {
         const Problem<dim>        problem(on<dim>(mesh, horizon, zone), ModelKind::coupled);
-        const CouplingCertificate found = examine_coupling(*problem.fem, true);
+        const CouplingCertificate found = examine_coupling(problem.op(), true);
         EXPECT_LT(found.linear, 1e-12) << zone;
         EXPECT_LT(found.asymmetry, 1e-13) << zone;
         EXPECT_GT(found.lowest_remainder, -1e-13) << zone;
         EXPECT_GT(found.lowest_eigenvalue, 0.) << zone;
-        EXPECT_GT(problem.fem->size().bonds, 0u) << zone;
+        EXPECT_GT(problem.op().size().bonds, 0u) << zone;
         EXPECT_GT(kept_share(problem), least_kept) << zone;
         Vector one = problem.values([](const dealii::Point<dim> &) { return 1.; }), image = one;
-        problem.fem->multiply(image, one);
-        EXPECT_LT(image.linfty_norm() / problem.fem->diagonal().linfty_norm(), 1e-13) << zone;
+        problem.op().multiply(image, one);
+        EXPECT_LT(image.linfty_norm() / problem.op().diagonal().linfty_norm(), 1e-13) << zone;
       }
   }
 } // namespace
@@ -209,14 +210,14 @@ TEST(MeshExchange, calibrated_over_the_zone)
   const Problem<2> problem(
     on<2>(distorted_mesh<2>(16, 0.1, 1.5), "0.075", "0.1 - max(abs(x - 0.5), abs(y - 0.5))"),
     ModelKind::coupled);
-  EXPECT_LT(examine_coupling(*problem.fem, true).linear, 1e-12);
-  const Families<2>                        &families = problem.fem->bonds().families();
+  EXPECT_LT(examine_coupling(problem.op(), true).linear, 1e-12);
+  const Families<2>                        &families = cells_of(problem.op()).bonds().families();
   const Nodes<2>                           &nodes    = families.nodes();
   std::vector<typename Families<2>::Member> bonds;
   double                                    sum = 0., n = 0.;
   for (unsigned int i = 0; i < nodes.n_owned(); ++i)
     {
-      if (!problem.fem->bonds().in_zone(i))
+      if (!cells_of(problem.op()).bonds().in_zone(i))
         continue;
       families.members_of(i, bonds);
       for (const auto &bond : bonds)
@@ -238,10 +239,10 @@ TEST(MeshExchange, crack_cut_into_the_mesh)
                        {"Cracks/Mesh", "faces"},
                        {"Coupling/Zone", "everywhere"}};
   const Problem<2> problem(shape, ModelKind::coupled), elements(shape, ModelKind::finite_elements);
-  const CouplingCertificate found = examine_coupling(*problem.fem, true);
+  const CouplingCertificate found = examine_coupling(problem.op(), true);
   EXPECT_LT(found.linear, 1e-12);
   EXPECT_GT(found.lowest_remainder, -1e-13);
-  EXPECT_GT(problem.fem->size().bonds, 1000u);
+  EXPECT_GT(problem.op().size().bonds, 1000u);
 }
 
 
@@ -302,7 +303,7 @@ TEST(MeshExchange, sides_that_are_not_quite_straight)
       {
         const Settings   settings = on<2>(turned_mesh(degrees, n_digits), "0.8", "everywhere");
         const Problem<2> problem(settings, ModelKind::coupled);
-        const CouplingCertificate found = examine_coupling(*problem.fem, true);
+        const CouplingCertificate found = examine_coupling(problem.op(), true);
         EXPECT_LT(found.linear, 1e-12) << degrees << ", " << n_digits;
         EXPECT_LT(found.asymmetry, 1e-13) << degrees << ", " << n_digits;
         compare_processes(settings);

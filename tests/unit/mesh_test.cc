@@ -277,7 +277,7 @@ namespace PeriDeal
     EXPECT_TRUE(problem.nodes->has_doubled_nodes());
     for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)
       {
-        problem.bonds->diffusion_bonds().bonds_of(i, bonds);
+        bonds_of(problem.op()).diffusion_bonds().bonds_of(i, bonds);
         const bool above = problem.nodes->crack_point(i)[1] > 0.5;
         for (const auto &bond : bonds)
           EXPECT_EQ(bond.cut, (problem.nodes->crack_point(bond.neighbor)[1] > 0.5) != above);

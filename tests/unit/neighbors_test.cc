@@ -85,7 +85,7 @@ TEST(Neighbors, are_those_of_a_plain_search)
     for (const std::string m : {"2", "3", "4.5"})
       {
         const Problem<2>         problem(settings + Settings{{"Peridynamics/Horizon ratio", m}});
-        const DiffusionBonds<2> &families  = problem.bonds->diffusion_bonds();
+        const DiffusionBonds<2> &families  = bonds_of(problem.op()).diffusion_bonds();
         const Neighbors<2>      &neighbors = families.neighbors();
         EXPECT_EQ(neighbors.has_unique_sites(), name != "doubled nodes");
         const double                         tiny = 1e-9 * problem.nodes->smallest_spacing();
@@ -125,7 +125,7 @@ TEST(Neighbors, near_boxes_are_those_of_a_plain_search)
   for (const auto &[name, settings] : bodies())
     {
       const Problem<2>    problem(settings);
-      const Neighbors<2> &neighbors = problem.bonds->diffusion_bonds().neighbors();
+      const Neighbors<2> &neighbors = bonds_of(problem.op()).diffusion_bonds().neighbors();
       for (const double distance : {0., 0.05, 0.2})
         {
           std::vector<unsigned int> expected;
@@ -157,7 +157,7 @@ TEST(Neighbors, outside_come_after_the_nodes)
 {
   const Problem<2>    problem(box +
                            Settings{{"Peridynamics/Boundary treatment", "fictitious mirror"}});
-  const Neighbors<2> &neighbors = problem.bonds->diffusion_bonds().neighbors();
+  const Neighbors<2> &neighbors = bonds_of(problem.op()).diffusion_bonds().neighbors();
   const unsigned int  n_local   = problem.nodes->n_local();
   ASSERT_GT(sum_of_all(neighbors.outside().size()), 0u);
   for (unsigned int f = 0; f < neighbors.outside().size(); ++f)

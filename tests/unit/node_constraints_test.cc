@@ -115,7 +115,7 @@ namespace PeriDeal
         Vector           u = problem.values(bumpy<2>);
         problem.op().distribute(u, 0.);
         u.update_ghost_values();
-        const auto                                   &families = problem.bonds->diffusion_bonds();
+        const auto &families = bonds_of(problem.op()).diffusion_bonds();
         std::vector<typename DiffusionBonds<2>::Bond> bonds;
         unsigned int                                  n = 0;
         for (unsigned int i = 0; i < problem.nodes->n_owned(); ++i)

@@ -64,7 +64,7 @@ namespace PeriDeal
                                                scene.domain,
                                                scene.cracks,
                                                scene.peridynamics.sampling.nodal_volume);
-          bonds = std::make_unique<BondOperator<dim>>(*nodes, scene);
+          field = field_of_bonds(*nodes, scene);
         }
       else
         {
@@ -80,7 +80,7 @@ namespace PeriDeal
                                        Zone<dim>(scene.coupling, scene.horizon()),
                                        scene.coupling.scheme);
             }
-          fem = std::make_unique<FEMOperator<dim>>(handler, scene, std::move(coupling));
+          field = field_of_elements(handler, scene, std::move(coupling));
         }
       find_positions();
     }
@@ -88,13 +88,6 @@ namespace PeriDeal
 
     template <int dim>
     Problem<dim>::~Problem() = default;
-
-
-    template <int dim>
-    DiffusionOperator &Problem<dim>::op() const
-    {
-      return bonds ? static_cast<DiffusionOperator &>(*bonds) : *fem;
-    }
 
 
     template <int dim>

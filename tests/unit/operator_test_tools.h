@@ -10,8 +10,10 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <perideal/mesh/mesh_builder.h>
-#include <perideal/operators/diffusion/bond_operator.h>
-#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/diffusion/cell_term.h>
+#include <perideal/operators/diffusion/extended_bond_term.h>
+#include <perideal/operators/diffusion/node_loads.h>
+#include <perideal/operators/diffusion/side_term.h>
 
 #include <gtest/gtest.h>
 
@@ -57,7 +59,10 @@ namespace PeriDeal
 
       ~Problem();
 
-      DiffusionOperator &op() const;
+      FieldOperator<dim> &op() const
+      {
+        return *field;
+      }
 
       Vector vector() const;
 
@@ -85,8 +90,7 @@ namespace PeriDeal
       std::unique_ptr<dealii::Triangulation<dim>> mesh;
       dealii::DoFHandler<dim>                     handler;
       std::unique_ptr<Nodes<dim>>                 nodes;
-      std::unique_ptr<BondOperator<dim>>          bonds;
-      std::unique_ptr<FEMOperator<dim>>           fem;
+      std::unique_ptr<FieldOperator<dim>>         field;
       std::vector<dealii::Point<dim>>             positions; // of owned unknowns
       std::vector<dealii::Point<dim>> sides; // the same, a little towards the unknown's own cells
 

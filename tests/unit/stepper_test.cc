@@ -82,7 +82,7 @@ namespace PeriDeal
                      {"Peridynamics/Boundary treatment", "fictitious mirror"},
                      {"Boundary conditions/Dirichlet", "left: 0 ; right: 0 ; bottom: 0 ; top: 0"}})
       {
-        for (const auto &member : problem.bonds->diffusion_bonds().weights().members())
+        for (const auto &member : bonds_of(problem.op()).diffusion_bonds().weights().members())
           lambda += member.weight / (cells * cells) *
                     (1. - std::cos(pi * member.offset[0] / cells) *
                             std::cos(pi * member.offset[1] / cells));

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/diffusion/cell_term.h>
 #include <perideal/operators/solid/elastic_elements.h>
 
 #include <optional>
@@ -49,7 +49,7 @@ namespace PeriDeal
 
   /** Collective. */
   template <int dim>
-  CouplingCertificate examine_coupling(const FEMOperator<dim> &op, const bool symmetric);
+  CouplingCertificate examine_coupling(const FieldOperator<dim> &op, const bool symmetric);
 
   /** For couplings without mirrors(). Collective. */
   template <int dim>

@@ -7,7 +7,7 @@
 
 #include <perideal/base/types.h>
 #include <perideal/bonds/diffusion_bonds.h>
-#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/diffusion/cell_term.h>
 
 #include <array>
 
@@ -40,10 +40,10 @@ namespace PeriDeal
    * straight sides. Beside the larger cells of a graded mesh it is that of the elements.
    */
   template <int dim>
-  void coupled_heat_flux(const FEMOperator<dim> &op,
-                         const Vector           &u,
-                         VectorField<dim>       &two_sided,
-                         VectorField<dim>       &one_sided);
+  void coupled_heat_flux(const CellTerm<dim> &cells,
+                         const Vector        &u,
+                         VectorField<dim>    &two_sided,
+                         VectorField<dim>    &one_sided);
 
   /** Part of each family (by volume) whose bonds cross a crack. Not collective. */
   template <int dim>

@@ -7,7 +7,7 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/base/types.h>
-#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/diffusion/cell_term.h>
 
 #include <functional>
 #include <memory>
@@ -45,7 +45,7 @@ namespace PeriDeal
      * @param op       of degree 1; it and the body must outlive this
      * @param coupling that of the operator, if it has one
      */
-    QuadraticElements(const FEMOperator<dim>    &op,
+    QuadraticElements(const FieldOperator<dim>  &op,
                       const BodyParameters<dim> &body,
                       const Coupling<dim>       *coupling = nullptr);
 
@@ -54,7 +54,7 @@ namespace PeriDeal
       return *quadratic;
     }
 
-    const FEMOperator<dim> &linear_operator() const
+    const FieldOperator<dim> &linear_operator() const
     {
       return op;
     }
@@ -126,7 +126,7 @@ namespace PeriDeal
 
     std::vector<Vector> second_derivatives(const Vector &v) const;
 
-    const FEMOperator<dim>                                    &op;
+    const FieldOperator<dim>                                  &op;
     const BodyParameters<dim>                                 &body;
     const std::unique_ptr<dealii::DoFHandler<dim>>             quadratic;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout, linear_layout;

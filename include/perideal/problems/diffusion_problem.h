@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/laws/lattice_family.h>
-#include <perideal/operators/diffusion/diffusion_operator_base.h>
+#include <perideal/operators/diffusion/field_operator.h>
 #include <perideal/problems/guards.h>
 #include <perideal/problems/problem.h>
 #include <perideal/solvers/stepper.h>
@@ -25,7 +25,7 @@ namespace PeriDeal
       : Field<dim>(on, scene, 1)
     {}
 
-    DiffusionOperatorBase<dim> &op() const override = 0;
+    FieldOperator<dim> &op() const override = 0;
 
     /** Initial value on the unknowns. */
     virtual void set_initial_value(Vector &u) const = 0;
@@ -120,12 +120,12 @@ namespace PeriDeal
     /** Make the stepper and begin the balance of heat. Throws UserError. */
     void begin_stepping();
 
-    DiffusionOperatorBase<dim> &op() const
+    FieldOperator<dim> &op() const
     {
       return body.op();
     }
 
-    /** As DiffusionOperatorBase::follow(), in between two advances. */
+    /** As FieldOperator::follow(), in between two advances. */
     void apply_change(const ChangeSet<dim> &damage);
 
     using Problem<dim>::scene;

@@ -187,10 +187,10 @@ namespace PeriDeal
    * Explicit steps above their limit for the values that there are, in sentences; empty if they are
    * not. @p op gets the material of the values. Collective.
    */
-  std::string cause_in_step(const Stepper &stepper,
-                            Operator      &op,
-                            const Vector  &u,
-                            const Trip    &trip);
+  std::string cause_in_step(const Stepper     &stepper,
+                            DiffusionOperator &op,
+                            const Vector      &u,
+                            const Trip        &trip);
 
   /** The same of a motion. K becomes the tangent at u. Collective. */
   std::string cause_in_motion(const MotionStepper &stepper, ElasticOperator &op, const Vector &u);

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <perideal/base/archive.h>
-#include <perideal/operators/interface/operator.h>
+#include <perideal/operators/interface/diffusion_operator.h>
 
 namespace PeriDeal
 {
@@ -12,7 +12,7 @@ namespace PeriDeal
    * The sum of the owned entries of y that are not free, of this process. @p work is overwritten.
    * Not collective.
    */
-  double sum_of_held(const Operator &op, const Vector &y, Vector &work);
+  double sum_of_held(const DiffusionOperator &op, const Vector &y, Vector &work);
 
 
   /**
@@ -23,7 +23,7 @@ namespace PeriDeal
   class HeldHeat
   {
   public:
-    explicit HeldHeat(const Operator &op);
+    explicit HeldHeat(const DiffusionOperator &op);
 
     /** The span of time begins with u, distributed. */
     void begin(const Vector &u);
@@ -35,9 +35,9 @@ namespace PeriDeal
     void exchange(Archive &archive, const NodeKeys &keys);
 
   private:
-    const Operator &op;
-    bool            needed;
-    Vector          before, heat, work;
+    const DiffusionOperator &op;
+    bool                     needed;
+    Vector                   before, heat, work;
   };
 
 
@@ -52,7 +52,7 @@ namespace PeriDeal
   class ConservativeStep
   {
   public:
-    explicit ConservativeStep(const Operator &op);
+    explicit ConservativeStep(const DiffusionOperator &op);
 
     /** The capacity depends on the solution: otherwise there is nothing to correct. */
     bool needed() const;
@@ -66,7 +66,7 @@ namespace PeriDeal
     std::size_t memory_consumption() const;
 
   private:
-    const Operator &op;
-    Vector          heat, work;
+    const DiffusionOperator &op;
+    Vector                   heat, work;
   };
 } // namespace PeriDeal

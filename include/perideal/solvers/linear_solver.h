@@ -6,7 +6,7 @@
 #include <deal.II/lac/solver_control.h>
 
 #include <perideal/base/archive.h>
-#include <perideal/operators/interface/operator.h>
+#include <perideal/operators/interface/diffusion_operator.h>
 
 #include <memory>
 
@@ -116,7 +116,7 @@ namespace PeriDeal
    * Throws UserError if nothing fixes the level of the solution in the body or in a part that
    * cracks have cut off. Collective.
    */
-  unsigned int solve_steady(Operator          &op,
+  unsigned int solve_steady(DiffusionOperator &op,
                             Vector            &u,
                             const double       t,
                             const double       tolerance,

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/interface/operator.h>
+#include <perideal/operators/interface/diffusion_operator.h>
 #include <perideal/solvers/findings.h>
 #include <perideal/solvers/step_span.h>
 
@@ -42,8 +42,8 @@ namespace PeriDeal
 
 
   /**
-   * Advances C du/dt = f(t) - K u of an Operator in time. Steppers allocate their vectors once, in
-   * the constructor.
+   * Advances C du/dt = f(t) - K u of a DiffusionOperator in time. Steppers allocate their vectors
+   * once, in the constructor.
    */
   class Stepper
   {
@@ -133,10 +133,10 @@ namespace PeriDeal
 
     /**
      * What entered through sides and from sources in all time advanced so far, this process's
-     * share: Operator::entering() integrated by the method's own steps, as if it were one more
-     * unknown, so that a linear operator which conserves heat keeps the balance to round-off.
-     * Prescribed unknowns take up what their values need besides (Operator::heat_between()): that
-     * is added. Not collective.
+     * share: DiffusionOperator::entering() integrated by the method's own steps, as if it were one
+     * more unknown, so that a linear operator which conserves heat keeps the balance to round-off.
+     * Prescribed unknowns take up what their values need besides
+     * (DiffusionOperator::heat_between()): that is added. Not collective.
      */
     double entered() const
     {
@@ -185,14 +185,14 @@ namespace PeriDeal
    * material, loads and boundary values constant in time), adaptive RKC2 where C is diagonal, else
    * SDIRK2.
    */
-  std::string choose_stepper(const Operator &op);
+  std::string choose_stepper(const DiffusionOperator &op);
 
   /**
    * The one factory. Throws UserError for a stepper that the operator does not allow, and for a
    * step above the stability bound (with both bounds in the message). Collective.
    */
   std::unique_ptr<Stepper> make_stepper(const std::string    &name,
-                                        Operator             &op,
+                                        DiffusionOperator    &op,
                                         const StepperOptions &options);
 
   /**
@@ -205,18 +205,19 @@ namespace PeriDeal
    * Throws UserError, with both bounds in the message, for a step of an explicit method above the
    * stability bound. Collective.
    */
-  void refuse_unstable_step(const std::string &name, const Operator &op, const double dt);
+  void refuse_unstable_step(const std::string &name, const DiffusionOperator &op, const double dt);
 
   // One maker per family of methods, each in its own file.
-  std::unique_ptr<Stepper> make_euler(Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_rk4(Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_rkc2(Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_euler(DiffusionOperator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_rk4(DiffusionOperator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_rkc2(DiffusionOperator &op, const StepperOptions &options);
   /** With so many stages in each step, two or more, whether that is stable or not. */
-  std::unique_ptr<Stepper> make_rkc2(Operator             &op,
+  std::unique_ptr<Stepper> make_rkc2(DiffusionOperator    &op,
                                      const StepperOptions &options,
                                      const unsigned int    n_stages);
-  std::unique_ptr<Stepper> make_chebyshev(Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_crank_nicolson(Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_bdf2(Operator &op, const StepperOptions &options);
-  std::unique_ptr<Stepper> make_sdirk2(Operator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_chebyshev(DiffusionOperator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_crank_nicolson(DiffusionOperator    &op,
+                                               const StepperOptions &options);
+  std::unique_ptr<Stepper> make_bdf2(DiffusionOperator &op, const StepperOptions &options);
+  std::unique_ptr<Stepper> make_sdirk2(DiffusionOperator &op, const StepperOptions &options);
 } // namespace PeriDeal

@@ -93,8 +93,6 @@ namespace PeriDeal
 
   Spectrum SpectralBounds::get() const
   {
-    if (op.depends_on_solution()) // changes with each step
-      return {bounds.safe, bounds.safe};
     if (bounds.sharp == 0.)
       bounds.sharp = sharp_bound(op, bounds.safe, fill_noise);
     return bounds;

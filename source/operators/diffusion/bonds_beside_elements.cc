@@ -90,14 +90,14 @@ namespace PeriDeal
       return;
     std::vector<unsigned int> nodes(layout->locally_owned_size());
     std::iota(nodes.begin(), nodes.end(), 0);
-    add_rows(matrix, nodes, rows(nodes));
+    add_bonds(matrix, nodes, rows(nodes));
   }
 
 
   template <int dim>
-  void BondsBesideElements<dim>::add_rows(TrilinosWrappers::SparseMatrix  &matrix,
-                                          const std::vector<unsigned int> &nodes,
-                                          const Conductances              &rows) const
+  void BondsBesideElements<dim>::add_bonds(TrilinosWrappers::SparseMatrix  &matrix,
+                                           const std::vector<unsigned int> &nodes,
+                                           const Conductances              &rows) const
   {
     std::vector<types::global_dof_index> columns;
     std::vector<double>                  values;
@@ -119,7 +119,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  typename BondsBesideElements<dim>::Conductances BondsBesideElements<dim>::apply_change(
+  typename BondsBesideElements<dim>::Conductances BondsBesideElements<dim>::change_bonds(
     const ChangeSet<dim>            &change,
     const std::vector<unsigned int> &nodes)
   {
@@ -161,7 +161,7 @@ namespace PeriDeal
         if (!rows[k].empty())
           touched.insert(nodes[k]);
       }
-    add_rows(matrix, nodes, rows);
+    add_bonds(matrix, nodes, rows);
   }
 
 
@@ -273,7 +273,7 @@ namespace PeriDeal
     size.memory += coupled->memory_consumption() + coupled->families().nodes().memory_consumption();
     if (in_form)
       {
-        BondTerm::add_to(size);
+        BondTerm<dim>::add_to(size);
         return;
       }
     if (recount)

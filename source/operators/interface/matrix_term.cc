@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/instantiate.h>
 #include <perideal/base/matrix_product.h>
 #include <perideal/base/matrix_rows.h>
 #include <perideal/operators/interface/matrix_term.h>
@@ -14,7 +15,8 @@ namespace PeriDeal
 {
   using namespace dealii;
 
-  void MatrixTerm::keep_rows(const Utilities::MPI::Partitioner &layout)
+  template <int dim>
+  void MatrixTerm<dim>::keep_rows(const Utilities::MPI::Partitioner &layout)
   {
     kept        = Kept();
     double size = 0.;
@@ -38,10 +40,11 @@ namespace PeriDeal
   }
 
 
-  void MatrixTerm::add(Vector            &y,
-                       const At          &at,
-                       const unsigned int begin,
-                       const unsigned int end) const
+  template <int dim>
+  void MatrixTerm<dim>::add(Vector            &y,
+                            const At          &at,
+                            const unsigned int begin,
+                            const unsigned int end) const
   {
     const auto from = std::lower_bound(kept.rows.begin(), kept.rows.end(), begin);
     for (auto row = from; row != kept.rows.end() && *row < end; ++row)
@@ -55,33 +58,30 @@ namespace PeriDeal
   }
 
 
-  void MatrixTerm::set_then(Vector &y, const At &at, const Operator::RowsAction &finish) const
+  template <int dim>
+  void MatrixTerm<dim>::set_then(Vector &y, const At &at, const Operator::RowsAction &finish) const
   {
     MatrixProduct(matrix).vmult(y, at.u);
     finish(0, y.locally_owned_size());
   }
 
 
-  void MatrixTerm::add_diagonal(Vector &diagonal, const Rows &rows) const
-  {
-    for (const unsigned int i : rows)
-      for_each_entry_of_row(matrix, i, [&](const auto column, const double value) {
-        if (column == diagonal.get_partitioner()->local_to_global(i))
-          diagonal.local_element(i) += value;
-      });
-  }
-
-
-  void MatrixTerm::add_row_sums(std::vector<double> &sums, const Rows &rows) const
+  template <int dim>
+  void MatrixTerm<dim>::add_rows(Vector              &diagonal,
+                                 std::vector<double> &sums,
+                                 const Rows          &rows) const
   {
     for (std::size_t k = 0; k < rows.size(); ++k)
-      for_each_entry_of_row(matrix, rows[k], [&](const auto, const double value) {
+      for_each_entry_of_row(matrix, rows[k], [&](const auto column, const double value) {
+        if (column == diagonal.get_partitioner()->local_to_global(rows[k]))
+          diagonal.local_element(rows[k]) += value;
         sums[k] += std::abs(value);
       });
   }
 
 
-  void MatrixTerm::add_to(OperatorSize &size) const
+  template <int dim>
+  void MatrixTerm<dim>::add_to(OperatorSize &size) const
   {
     size.memory += matrix.memory_consumption();
     const MPI_Comm communicator = matrix.get_mpi_communicator();
@@ -96,4 +96,7 @@ namespace PeriDeal
     size.nonzeros = matrix.n_nonzero_elements();
     size.busiest  = work.max / work.avg;
   }
+
+
+  PERIDEAL_INSTANTIATE_CLASS(class MatrixTerm);
 } // namespace PeriDeal

@@ -48,10 +48,7 @@ namespace PeriDeal
     /** The Gershgorin bound. Not collective. */
     double safe() const;
 
-    /**
-     * Both bounds; where K depends on the solution the safe one twice, which costs nothing.
-     * Collective.
-     */
+    /** Both bounds. Collective. */
     Spectrum get() const;
 
     /** A vector of fill_noise, which is kept. Collective. */

@@ -19,13 +19,13 @@ namespace PeriDeal
 {
   /**
    * The bonds of a coupling as part of the matrix K of finite elements, or, where the coupling
-   * prefers it, apart from it: as a term of their own beside the few rows of the matrix that are
-   * not empty.
+   * prefers it, apart from it: as a sum of their own, to which CellTerm adds the few rows of the
+   * matrix that are not empty.
    *
    * Bonds are multiplied by the factors of crack-side scaling. Not collective unless stated.
    */
   template <int dim>
-  class BondsBesideElements : public BondTerm
+  class BondsBesideElements : public BondTerm<dim>
   {
   public:
     /** Some rows of bonds: numbers of neighbours (local) and conductances. */
@@ -42,7 +42,7 @@ namespace PeriDeal
     /** Damage may leave nodes alone, which keep their heat. */
     bool has_damage() const;
 
-    /** The bonds are a term of their own. The same on all processes. */
+    /** The bonds are not in the matrix. The same on all processes. */
     bool apart() const
     {
       return in_form;
@@ -66,7 +66,7 @@ namespace PeriDeal
      * @param nodes whose bonds may change
      * @return what their bonds were, for add_changes(); empty if they are apart
      */
-    Conductances apply_change(const ChangeSet<dim> &change, const std::vector<unsigned int> &nodes);
+    Conductances change_bonds(const ChangeSet<dim> &change, const std::vector<unsigned int> &nodes);
 
     /** Add to the matrix what has changed; rows that have are inserted into the set. */
     void add_changes(const std::vector<unsigned int>        &nodes,
@@ -96,9 +96,9 @@ namespace PeriDeal
     void add_to(OperatorSize &size) const override;
 
   private:
-    void add_rows(dealii::TrilinosWrappers::SparseMatrix &matrix,
-                  const std::vector<unsigned int>        &nodes,
-                  const Conductances                     &rows) const;
+    void add_bonds(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                   const std::vector<unsigned int>        &nodes,
+                   const Conductances                     &rows) const;
     void set_form_factors();
 
     const std::unique_ptr<Coupling<dim>>                             coupled;

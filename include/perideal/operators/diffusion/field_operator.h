@@ -3,29 +3,60 @@
 
 #pragma once
 
+#include <perideal/operators/bounds/spectrum.h>
 #include <perideal/operators/diffusion/diffusion_loads.h>
-#include <perideal/operators/diffusion/diffusion_operator_base.h>
 #include <perideal/operators/diffusion/prescribed_values.h>
+#include <perideal/operators/interface/diffusion_operator.h>
 #include <perideal/operators/interface/term.h>
+#include <perideal/scene/body_parameters.h>
 
-#include <initializer_list>
+#include <functional>
+#include <memory>
 #include <vector>
 
 namespace PeriDeal
 {
+  /** What a FieldOperator is put together from. */
+  template <int dim>
+  struct FieldParts
+  {
+    using Visit = std::function<void(const unsigned int unknown, const dealii::Point<dim> &place)>;
+
+    /** With the cracks of time @p start. Throws UserError, as BodyParameters::crack_history(). */
+    explicit FieldParts(const BodyParameters<dim> &body, const double start = 0.)
+      : start(start)
+      , history(body.crack_history())
+      , cracks_of(history.representative(start))
+    {}
+
+    double                                       start;
+    CrackHistory<dim>                            history;
+    double                                       cracks_of; // representative time of those in K
+    DiffusionOperator::Layout                    layout;    // of vectors
+    std::shared_ptr<Capacity>                    capacity;
+    std::shared_ptr<const PrescribedValues<dim>> values;
+    std::shared_ptr<const DiffusionLoads<dim>>   loads;
+    std::vector<std::shared_ptr<Term<dim>>>      terms; // the others add to what the first one sets
+
+    /** Call for the owned unknowns, each once or several times. Not collective. */
+    std::function<void(const Visit &)> for_each_place;
+  };
+
+
   /**
-   * A model of diffusion that is a list of terms, with loads and prescribed values:
+   * Diffusion, in every model a list of terms with capacity, loads and prescribed values:
    *
-   *   r_i = f_i(t) - sum over terms (K u)_i  of free unknowns.
+   *   C_i du_i/dt = r_i = f_i(t) - sum over terms (K u)_i  of free unknowns.
    *
-   * Who derives from it makes the parts, says that they are complete (set_parts()), and mends them
-   * when cracks move or conductivities change.
+   * field_of_bonds() (peridynamics) and field_of_elements() (finite elements, with bonds or
+   * without) put the parts together.
    */
   template <int dim>
-  class FieldOperator : public DiffusionOperatorBase<dim>
+  class FieldOperator : public DiffusionOperator
   {
   public:
-    using RowsAction = Operator::RowsAction;
+    /** Collective. Throws UserError where nothing holds an unknown. The body must outlive this. */
+    FieldOperator(const BodyParameters<dim> &body, const FieldParts<dim> &parts);
 
     void apply_then(Vector &y, const Vector &x, const RowsAction &finish) const override;
     void residual_then(Vector           &r,
@@ -35,75 +66,80 @@ namespace PeriDeal
 
     void distribute(Vector &u, const double t) const override
     {
-      prescribed->distribute(u, t);
+      parts.values->distribute(u, t);
     }
 
     void distribute_homogeneous(Vector &x) const override
     {
-      prescribed->distribute_homogeneous(x);
+      parts.values->distribute_homogeneous(x);
     }
 
     void clear_constrained(Vector &y) const override
     {
-      prescribed->mask(y);
+      parts.values->mask(y);
     }
 
-    bool symmetric() const override;
-    bool depends_on_time() const override
+    Spectrum spectrum() const override;
+    bool     symmetric() const override;
+    bool     depends_on_time() const override
     {
-      return loads->depends_on_time();
+      return parts.loads->depends_on_time();
     }
 
-    bool         has_steady_state() const override;
-    void         surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool has_steady_state() const override;
+    void surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
+    bool surrogate_is_exact() const override
+    {
+      return first_term().surrogate_is_exact();
+    }
+
+    double next_event(const double t) const override
+    {
+      return parts.history.next_event(t);
+    }
+
+    bool update(const double t) override;
+
+    /**
+     * Follow damage of a solid on the same nodes (ChangeSet::broken). Returns whether K has
+     * changed; then steppers have to be restarted. Collective.
+     */
+    bool follow(ChangeSet<dim> change);
+
+    bool depends_on_solution() const override
+    {
+      return body.material.depends_on_temperature();
+    }
+
+    void         take_material_at(const Vector &u) override;
+    Balance      balance(const Vector &u, const double t, const bool steady) const override;
+    std::string  place_of(const unsigned int local_index) const override;
     OperatorSize size() const override;
 
     /** y = K u of the terms with what is given from outside at time t. Collective. */
     void multiply(Vector &y, const Vector &u, const double t = 0.) const;
 
-  protected:
-    using Rows = Term::Rows; // owned unknowns, ascending
-
-    using DiffusionOperatorBase<dim>::DiffusionOperatorBase;
-
-    /** All must outlive this. The first of the terms sets what the others add to. */
-    void set_parts(const PrescribedValues<dim>        &values,
-                   const DiffusionLoads<dim>          &of_sides,
-                   const std::initializer_list<Term *> list);
-
     /**
-     * Take the diagonal of some rows from the terms, also where they are not free. Returns the sums
-     * of the absolute values of their entries. Not collective.
+     * Numbers in [-1, 1] that look random but depend on the unknowns' positions alone. Collective.
      */
-    std::vector<double> take_rows(const Rows &rows);
+    const Vector &noise() const
+    {
+      return bounds.noise();
+    }
 
-    /** All owned unknowns. */
-    Rows all_rows() const;
-
-    /** Gershgorin's bound of these rows on all processes, with take_rows()'s sums. Collective. */
-    double largest_rate(const Rows &rows, const std::vector<double> &sums) const;
-
-    /** Whether a row counts in Gershgorin's bound. */
-    virtual bool counts(const unsigned int row) const = 0;
-
-    /** The matrix of surrogate(), before rows and columns that are not free are cleared. */
-    virtual void make_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const = 0;
-
-    /** Add what this process's bonds and cells conduct through cracks that conduct. Collective. */
-    virtual void add_crack_heat(Balance &balance, const Vector &u) const = 0;
-
-    /** Heat in this process's part of the body. Collective. */
-    virtual double content(const Vector &u) const = 0;
+    /** The one of the bonds or cells of the body: bonds_of() and cells_of() know more of it. */
+    const Term<dim> &first_term() const
+    {
+      return *parts.terms[0];
+    }
 
   private:
-    void find_flows(Balance &balance, Vector &heat, const Vector &u, const double t) const override;
+    bool apply_change(const ChangeSet<dim> &change);
+    void take_all_rows(const RowsOfK::After after);
 
-    /** y = K u and finish; adds what flows in through terms and prescribed unknowns. */
-    void add_up(Vector &y, const Term::At &at, double &entered, const RowsAction &finish) const;
-
-    const PrescribedValues<dim> *prescribed = nullptr;
-    const DiffusionLoads<dim>   *loads      = nullptr;
-    std::vector<Term *>          terms;
-    mutable Vector               scratch; // where slaves have to be set
+    const BodyParameters<dim> &body;
+    FieldParts<dim>            parts;
+    SpectralBounds             bounds;
+    mutable Vector             scratch; // where slaves have to be set
   };
 } // namespace PeriDeal

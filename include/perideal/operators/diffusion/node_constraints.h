@@ -41,6 +41,11 @@ namespace PeriDeal
       return kinds[node];
     }
 
+    bool counts_in_bounds(const unsigned int row) const override
+    {
+      return kinds[row] == free;
+    }
+
     bool any_slave() const override
     {
       return slaves_exist;

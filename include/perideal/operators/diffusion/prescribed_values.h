@@ -66,6 +66,12 @@ namespace PeriDeal
       this->mask(x);
     }
 
+    /** Whether the row of an owned unknown counts in Gershgorin's bound. Not collective. */
+    virtual bool counts_in_bounds(const unsigned int /*row*/) const
+    {
+      return true;
+    }
+
     /** In the order of unknowns. */
     const std::vector<Entry> &entries() const
     {

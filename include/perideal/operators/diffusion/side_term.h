@@ -15,9 +15,12 @@ namespace PeriDeal
    * a load. The loads must outlive this.
    */
   template <int dim>
-  class SideTerm : public Term
+  class SideTerm : public Term<dim>
   {
   public:
+    using typename Term<dim>::At;
+    using typename Term<dim>::Rows;
+
     explicit SideTerm(const DiffusionLoads<dim> &loads)
       : loads(loads)
     {}
@@ -32,19 +35,12 @@ namespace PeriDeal
       });
     }
 
-    void add_diagonal(Vector &diagonal, const Rows &rows) const override
-    {
-      for (const unsigned int row : rows)
-        for_each(row, row + 1, [&](const unsigned int i, const double coefficient) {
-          diagonal.local_element(i) += coefficient;
-        });
-    }
-
-    /** Twice that, as bonds have twice their part of the diagonal. */
-    void add_row_sums(std::vector<double> &sums, const Rows &rows) const override
+    /** Twice that to the sums, as bonds have twice their part of the diagonal. */
+    void add_rows(Vector &diagonal, std::vector<double> &sums, const Rows &rows) const override
     {
       for (std::size_t k = 0; k < rows.size(); ++k)
-        for_each(rows[k], rows[k] + 1, [&](const unsigned int, const double coefficient) {
+        for_each(rows[k], rows[k] + 1, [&](const unsigned int i, const double coefficient) {
+          diagonal.local_element(i) += coefficient;
           sums[k] += 2. * coefficient;
         });
     }

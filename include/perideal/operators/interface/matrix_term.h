@@ -16,9 +16,13 @@ namespace PeriDeal
    * no terms of their own. As the first term it is multiplied by as it is; beside another term only
    * few rows have entries, and these are kept (keep_rows()).
    */
-  class MatrixTerm : public Term
+  template <int dim>
+  class MatrixTerm : public Term<dim>
   {
   public:
+    using typename Term<dim>::At;
+    using typename Term<dim>::Rows;
+
     /** @param first of the terms */
     MatrixTerm(const bool first, const bool is_symmetric)
       : first(first)
@@ -36,8 +40,7 @@ namespace PeriDeal
              const unsigned int begin,
              const unsigned int end) const override;
     void set_then(Vector &y, const At &at, const Operator::RowsAction &finish) const override;
-    void add_diagonal(Vector &diagonal, const Rows &rows) const override;
-    void add_row_sums(std::vector<double> &sums, const Rows &rows) const override;
+    void add_rows(Vector &diagonal, std::vector<double> &sums, const Rows &rows) const override;
     void add_to(OperatorSize &size) const override;
     bool symmetric() const override
     {

@@ -58,8 +58,8 @@ namespace PeriDeal
 
   /**
    * A semi-discrete model C du/dt = f(t) - K u with some unknowns prescribed (Dirichlet values) and
-   * some slaved to others. Every model has this one interface, so time steppers and solvers know
-   * nothing of bonds or elements.
+   * some slaved to others. Every model has this one interface, so solvers know nothing of bonds or
+   * elements. What heat needs besides is in DiffusionOperator, what solids do in ElasticOperator.
    *
    * Vectors come from initialize_vector(). K is positive semidefinite; f, K u are in power (W; per
    * unit thickness in 2D). "Free" are the unknowns that are neither prescribed nor slaves. All
@@ -98,16 +98,6 @@ namespace PeriDeal
       finish(0, y.locally_owned_size());
     }
 
-    /** As residual(), with finish as in apply_then(). */
-    virtual void residual_then(Vector           &r,
-                               const Vector     &u,
-                               const double      t,
-                               const RowsAction &finish) const
-    {
-      residual(r, u, t);
-      finish(0, r.locally_owned_size());
-    }
-
     /** Set the prescribed and the slave values of u at time t. */
     virtual void distribute(Vector &u, const double t) const = 0;
 
@@ -120,40 +110,8 @@ namespace PeriDeal
     /** Diagonal of C, or its lumped form. Positive everywhere. Not collective. */
     virtual const Vector &lumped_capacity() const = 0;
 
-    /** Whether C is its diagonal: explicit steppers need that. Not collective. */
-    virtual bool capacity_is_diagonal() const = 0;
-
     /** y = C x. */
     virtual void apply_capacity(Vector &y, const Vector &x) const = 0;
-
-    /** C depends on the solution. Not collective. */
-    virtual bool capacity_depends_on_solution() const
-    {
-      return false;
-    }
-
-    /**
-     * y = what each unknown takes up from the temperatures u to v: the integral of C along the
-     * straight line between both, whatever take_material_at() was given. The sum of y is the change
-     * of the content of the body.
-     */
-    virtual void heat_between(Vector &y, const Vector &u, const Vector &v) const
-    {
-      change_of_heat = v;
-      change_of_heat -= u;
-      apply_capacity(y, change_of_heat);
-    }
-
-    /**
-     * What entered, per time, through the sides and from sources at the last residual(): this
-     * process's share of Balance::throughput(), read off the rows of prescribed unknowns. After
-     * apply() the part of it that is linear in x. 0 where nobody keeps it (elastic bodies). Not
-     * collective.
-     */
-    double entering() const
-    {
-      return entering_now;
-    }
 
     /** Diagonal of K, one on unknowns that are not free. Not collective. */
     virtual const Vector &diagonal() const = 0;
@@ -178,12 +136,6 @@ namespace PeriDeal
 
     /** Loads or prescribed values change with time. Not collective. */
     virtual bool depends_on_time() const = 0;
-
-    /**
-     * Some unknown is prescribed or held by transfer, so that a steady state is determined. Not
-     * collective.
-     */
-    virtual bool has_steady_state() const = 0;
 
     /**
      * A sparse matrix spectrally near K on the free unknowns, cheap enough for algebraic multigrid:
@@ -222,32 +174,6 @@ namespace PeriDeal
       return std::numeric_limits<double>::infinity();
     }
 
-    /**
-     * Make K that of the span of time between events that holds t (an event belongs to the span
-     * that begins with it). Returns whether K has changed; then steppers have to be restarted. Heat
-     * stays where it is: only conductances change.
-     */
-    virtual bool update(const double)
-    {
-      return false;
-    }
-
-    /**
-     * K or C depend on the solution itself: temperature-dependent conductivity or capacity. Not
-     * collective.
-     */
-    virtual bool depends_on_solution() const
-    {
-      return false;
-    }
-
-    /**
-     * Make K and C those of the temperatures u, which must have been through distribute(). Bounds
-     * and diagonals change with them, and so do values of slaves: distribute() again before
-     * residual().
-     */
-    virtual void take_material_at(const Vector &) {}
-
     /** Coordinates of an owned unknown for messages, as `(x, y)`. Not collective. */
     virtual std::string place_of(const unsigned int local_index) const = 0;
 
@@ -276,24 +202,5 @@ namespace PeriDeal
 
   protected:
     mutable unsigned long long applications = 0;
-    mutable double             entering_now = 0.; // of entering()
-
-  private:
-    mutable Vector change_of_heat; // heat_between(): allocated at its first call
-  };
-
-
-  /**
-   * A model of diffusion: u is a temperature, a wetness or a potential, and heat, moisture or
-   * charge is conserved.
-   */
-  class DiffusionOperator : public Operator
-  {
-  public:
-    /**
-     * Heat through each side and in the body; u must have been through distribute(u, t). @p steady
-     * leaves out storage.
-     */
-    virtual Balance balance(const Vector &u, const double t, const bool steady) const = 0;
   };
 } // namespace PeriDeal

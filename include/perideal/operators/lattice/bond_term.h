@@ -19,9 +19,13 @@ namespace PeriDeal
    * What bonds conduct: sum_j W_ij (u_i - u_j), by a BondForm. Vectors have the horizon-wide halo
    * of the nodes.
    */
-  class BondTerm : public Term
+  template <int dim>
+  class BondTerm : public Term<dim>
   {
   public:
+    using typename Term<dim>::At;
+    using typename Term<dim>::Rows;
+
     /** Take the bonds, of as many nodes as the vectors of a layout have. Not collective. */
     void take(std::unique_ptr<BondForm>                                         of_bonds,
               const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &layout)
@@ -72,16 +76,13 @@ namespace PeriDeal
       at.u.set_ghost_state(false);
     }
 
-    void add_diagonal(Vector &diagonal, const Rows &rows) const override
-    {
-      for (const unsigned int i : rows)
-        diagonal.local_element(i) += sums[i];
-    }
-
-    void add_row_sums(std::vector<double> &of_rows, const Rows &rows) const override
+    void add_rows(Vector &diagonal, std::vector<double> &of_rows, const Rows &rows) const override
     {
       for (std::size_t k = 0; k < rows.size(); ++k)
-        of_rows[k] += 2. * sums[rows[k]];
+        {
+          diagonal.local_element(rows[k]) += sums[rows[k]];
+          of_rows[k] += 2. * sums[rows[k]];
+        }
     }
 
     void add_to(OperatorSize &size) const override

@@ -270,11 +270,6 @@ namespace PeriDeal
       return true;
     }
 
-    bool capacity_is_diagonal() const override
-    {
-      return true;
-    }
-
     void apply_capacity(Vector &y, const Vector &x) const override
     {
       y = x;

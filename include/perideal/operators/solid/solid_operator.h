@@ -72,11 +72,6 @@ namespace PeriDeal
       return loads_vary || conditions->depends_on_time();
     }
 
-    bool has_steady_state() const override
-    {
-      return true; // scenes that leave rigid motions free are refused when they are read
-    }
-
     double next_event(const double t) const override
     {
       return history.next_event(t);

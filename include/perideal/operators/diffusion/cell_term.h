@@ -3,8 +3,10 @@
 
 #pragma once
 
+#include <perideal/operators/diffusion/cell_capacity.h>
 #include <perideal/operators/diffusion/cell_matrices.h>
 #include <perideal/operators/diffusion/contact_pairs.h>
+#include <perideal/operators/diffusion/element_constraints.h>
 #include <perideal/operators/diffusion/field_operator.h>
 #include <perideal/operators/diffusion/heat_loads.h>
 #include <perideal/operators/interface/matrix_term.h>
@@ -17,7 +19,8 @@
 namespace PeriDeal
 {
   /**
-   * Heat conduction with continuous finite elements Q1 to Q3 on the mesh as it is.
+   * What cells conduct, by continuous finite elements Q1 to Q3 on the mesh as it is, with the sides
+   * that transfer heat in their matrices and, of the model `coupled`, with bonds.
    *
    * Cracks: `faces` are in the mesh already (doubled vertices). `pairs` (Q1): in each cell with a
    * pair of vertices that a crack separates, the cell matrix is replaced by the pair conductances
@@ -26,42 +29,33 @@ namespace PeriDeal
    * to cracks are multiplied by the mean of their vertices' factors. `removed`: cut cells conduct
    * nothing.
    *
-   * With a coupling the cells keep what it leaves of them, and its bonds are added: the model
-   * `coupled`. Then the elements are Q1, and vectors have the horizon-wide halo of the nodes.
-   * Otherwise vectors have the locally relevant dofs as ghosts.
+   * With a coupling the cells keep what it leaves of them, and its bonds are added: in the matrix,
+   * or as a sum of their own (BondsBesideElements). Then the elements are Q1, and vectors have the
+   * horizon-wide halo of the nodes. Otherwise vectors have the locally relevant dofs as ghosts.
    *
    * Hanging nodes of a graded mesh follow from their neighbours: K is C^T K C, and their rows are
    * those of unknowns that are not free.
+   *
+   * It makes the parts of an operator that belong to it, and mends them all.
    */
   template <int dim>
-  class FEMOperator : public FieldOperator<dim>
+  class CellTerm : public MatrixTerm<dim>
   {
   public:
+    using typename Term<dim>::At;
+    using typename Term<dim>::Rows;
+
     /**
-     * With the cracks of time @p start, whatever the coupling has had before. Collective. Throws
-     * UserError for material values that are not positive and for nodes that `removed` isolates.
+     * As field_of_elements().
+     * @param parts with layout and cracks
      */
-    FEMOperator(const dealii::DoFHandler<dim> &dof_handler,
-                const BodyParameters<dim>     &body,
-                std::unique_ptr<Coupling<dim>> coupling = nullptr,
-                const double                   start    = 0.);
+    CellTerm(const dealii::DoFHandler<dim> &dof_handler,
+             const BodyParameters<dim>     &body,
+             std::unique_ptr<Coupling<dim>> coupling,
+             const FieldParts<dim>         &parts);
 
-    void distribute(Vector &u, const double t) const override
-    {
-      prescribed.distribute(u, t);
-      hanging.interpolate(u);
-    }
-
-    bool capacity_is_diagonal() const override;
-    void apply_capacity(Vector &y, const Vector &x) const override;
-    bool surrogate_is_exact() const override
-    {
-      return !apart();
-    }
-
-    void         heat_between(Vector &y, const Vector &u, const Vector &v) const override;
-    void         take_material_at(const Vector &u) override;
-    OperatorSize size() const override;
+    /** All that elements have beside the term: capacity, values, loads. */
+    void give(FieldParts<dim> &parts) const;
 
     const dealii::DoFHandler<dim> &dof_handler() const
     {
@@ -81,7 +75,7 @@ namespace PeriDeal
 
     const HangingNodes<dim> &hanging_nodes() const
     {
-      return hanging;
+      return *hanging;
     }
 
     /** Only in the model `coupled`. */
@@ -112,55 +106,71 @@ namespace PeriDeal
     void visit_conductances(
       const std::function<void(const unsigned int, const unsigned int, const double)> &visit) const;
 
-    /**
-     * Heat in the body, which must have constant capacities; u has been through distribute().
-     * Collective.
-     */
-    double heat(const Vector &u) const;
+    void   begin(const At &at, double &entering) const override;
+    void   set_then(Vector &y, const At &at, const Operator::RowsAction &finish) const override;
+    void   add_rows(Vector &diagonal, std::vector<double> &sums, const Rows &rows) const override;
+    Mended apply_change(const ChangeSet<dim> &change) override;
+    void   take_material_at(const Vector &u) override;
+    void   require_held(const RowsOfK &of_all) const override;
+    void   make_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix,
+                          const Vector                           &others) const override;
+    bool   surrogate_is_exact() const override
+    {
+      return !apart();
+    }
 
-  protected:
-    bool   apply_change(const ChangeSet<dim> &change) override;
-    void   make_surrogate(dealii::TrilinosWrappers::SparseMatrix &matrix) const override;
-    void   add_crack_heat(Balance &balance, const Vector &u) const override;
-    double content(const Vector &u) const override;
-    bool   counts(const unsigned int row) const override;
-    dealii::Point<dim> position(const unsigned int local_index) const override;
+    void add_flows(Balance &balance, const At &at) const override;
+    void add_to(OperatorSize &size) const override;
 
   private:
-    using typename FieldOperator<dim>::Rows;
     using Cell = typename CellMatrices<dim>::Cell;
-    using DiffusionOperatorBase<dim>::body;
-    using DiffusionOperatorBase<dim>::layout;
-    using DiffusionOperatorBase<dim>::history;
-    using DiffusionOperatorBase<dim>::capacity;
-    using DiffusionOperatorBase<dim>::stiffness_diagonal;
-    using DiffusionOperatorBase<dim>::bounds;
 
-    /** The bonds are a form of their own. */
+    /** The bonds are a sum of their own. */
     bool apart() const
     {
       return zone_bonds && zone_bonds->apart();
     }
 
-    void assemble();
     void fill();
-    void find_bounds(const Rows &all, const std::vector<double> &sums);
-    void update_rows(const bool zone_moves, const bool may_isolate);
+
+    /** Mend cells and bonds; the rows that differ are in the memory of events. Collective. */
+    void mend(const ChangeSet<dim> &change, const std::vector<dealii::BoundingBox<dim>> &joins);
     void add_changes(const std::vector<Cell>                       &changed,
                      const std::vector<dealii::FullMatrix<double>> &old);
-    void fill_noise(Vector &vector) const;
 
     const dealii::DoFHandler<dim>                  &dofs;
+    const BodyParameters<dim>                      &body;
     CrackSideFactors                                crack_factors;
     const std::unique_ptr<BondsBesideElements<dim>> zone_bonds; // null: finite elements alone
-    const HangingNodes<dim>                         hanging;
+    const std::shared_ptr<const HangingNodes<dim>>  hanging;
     const std::vector<ContactPair>                  contact; // of cracks in the mesh
-    const HeatLoads<dim>                            loads;
+    const std::shared_ptr<const HeatLoads<dim>>     loads;
     CellMaterial<dim>                               cell_material;
-    const PrescribedValues<dim>                     prescribed;
+    const std::shared_ptr<ElementConstraints<dim>>  constraints;
+    const std::shared_ptr<CellCapacity<dim>>        capacity;
     CellMatrices<dim>                               cells;
-    MatrixTerm                                      cell_term; // with bonds that are not apart
-    dealii::TrilinosWrappers::SparseMatrix          mass;
     std::unique_ptr<EventWork<dim>>                 event; // made for the first event
   };
+
+
+  /**
+   * Finite elements, or with a coupling the model `coupled`, with the loads of HeatLoads.
+   *
+   * With the cracks of time @p start, whatever the coupling has had before. Dofs and body must
+   * outlive the operator. Collective. Throws UserError for material values that are not positive
+   * and for nodes that `removed` isolates.
+   */
+  template <int dim>
+  std::unique_ptr<FieldOperator<dim>> field_of_elements(
+    const dealii::DoFHandler<dim> &dof_handler,
+    const BodyParameters<dim>     &body,
+    std::unique_ptr<Coupling<dim>> coupling = nullptr,
+    const double                   start    = 0.);
+
+  /** The cells of what field_of_elements() has made. */
+  template <int dim>
+  const CellTerm<dim> &cells_of(const FieldOperator<dim> &field)
+  {
+    return dynamic_cast<const CellTerm<dim> &>(field.first_term());
+  }
 } // namespace PeriDeal

@@ -71,7 +71,8 @@ namespace PeriDeal
         conserves<2>(settings, height);
         unsigned int n_cut = 0;
         for (const auto &cell : problem.handler.active_cell_iterators())
-          if (cell->is_locally_owned() && problem.fem->cut_cells()[cell->active_cell_index()])
+          if (cell->is_locally_owned() &&
+              cells_of(problem.op()).cut_cells()[cell->active_cell_index()])
             ++n_cut;
         EXPECT_EQ(sum_of_all(n_cut), 8u);
       }

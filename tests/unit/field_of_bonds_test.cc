@@ -48,7 +48,7 @@ namespace PeriDeal
   } // namespace
 
 
-  TEST(BondOperator, lattice_form_is_stored_form_2D)
+  TEST(FieldOfBonds, lattice_form_is_stored_form_2D)
   {
     const Settings hole{{"Domain/Shape", "plate with hole"},
                         {"Domain/Hole center", "0.5, 0.4"},
@@ -98,7 +98,7 @@ namespace PeriDeal
   }
 
 
-  TEST(BondOperator, lattice_form_is_stored_form_1D)
+  TEST(FieldOfBonds, lattice_form_is_stored_form_1D)
   {
     for (const std::string cells : {"40", "37"})
       for (const Settings &placement : {Settings(), centers})
@@ -120,7 +120,7 @@ namespace PeriDeal
   }
 
 
-  TEST(BondOperator, lattice_form_is_stored_form_3D)
+  TEST(FieldOfBonds, lattice_form_is_stored_form_3D)
   {
     const Settings square{
       {"Cracks/Polygons", "0.2,0.2,0.52 ; 0.8,0.2,0.52 ; 0.8,0.8,0.61 ; 0.2,0.8,0.61"}};
@@ -141,7 +141,7 @@ namespace PeriDeal
   }
 
 
-  TEST(BondOperator, conserves_heat_and_is_semidefinite)
+  TEST(FieldOfBonds, conserves_heat_and_is_semidefinite)
   {
     const Settings small{{"Domain/Cells", "9, 7"}, {"Domain/Upper corner", "0.9, 0.7"}};
     const Settings through{{"Cracks/Segments", "0.2,0.3 ; 0.7,0.45"}};
@@ -183,7 +183,7 @@ namespace PeriDeal
       double             largest = 0.;
       unsigned int       n       = 0;
       const double       size    = u.linfty_norm();
-      const double       reach   = problem.bonds->diffusion_bonds().weights().reach() * (1. + 1e-9);
+      const double reach = bonds_of(problem.op()).diffusion_bonds().weights().reach() * (1. + 1e-9);
       for (unsigned int i = 0; i < y.locally_owned_size(); ++i)
         {
           bool inside = true;
@@ -205,7 +205,7 @@ namespace PeriDeal
   } // namespace
 
 
-  TEST(BondOperator, linear_and_quadratic_fields)
+  TEST(FieldOfBonds, linear_and_quadratic_fields)
   {
     // K u = -kappa Laplace(u) V, exactly for quadratics with discrete calibration: -2 kappa V for
     // x^2.
@@ -243,7 +243,7 @@ namespace PeriDeal
   }
 
 
-  TEST(BondOperator, number_of_bonds)
+  TEST(FieldOfBonds, number_of_bonds)
   {
     // On 30 x 30 nodes: each offset (a, b) of half a family gives (30 - a)(30 - b) bonds.
     for (const std::string form : {"lattice", "stored"})
@@ -260,7 +260,7 @@ namespace PeriDeal
   }
 
 
-  TEST(BondOperator, capacity_and_loads)
+  TEST(FieldOfBonds, capacity_and_loads)
   {
     const Problem<2> problem({{"Domain/Cells", "10, 10"},
                               {"Material/Density", "2"},
