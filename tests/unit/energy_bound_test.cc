@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <perideal/analysis/energy_bound.h>
+#include <perideal/solvers/linear_solver.h>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "goal_error_cases.h"
+
+namespace PeriDeal
+{
+  using namespace dealii;
+  using namespace OperatorTests;
+  using namespace GoalCases;
+
+  namespace
+  {
+    Settings degree(const unsigned int p)
+    {
+      return {{"Finite elements/Degree", std::to_string(p)}};
+    }
+
+
+    /** Finite elements of any degree, their solution, and what bounds its error. */
+    template <int dim>
+    struct Bounded
+    {
+      explicit Bounded(const Settings &settings, const MPI_Comm communicator = MPI_COMM_WORLD)
+        : problem(settings, ModelKind::finite_elements, communicator)
+        , u(problem.vector())
+        , solver(problem.op(), 1e-12, 4000)
+        , bounds(*problem.fem, problem.scene, [this](Vector &x, const Vector &b) {
+          solver.solve(0., 1., x, b);
+        })
+      {
+        EXPECT_EQ(EnergyBounds<dim>::why_not(problem.scene), "");
+        const auto start = std::chrono::steady_clock::now();
+        solve_steady(problem.op(), u, 0., 1e-12, 4000);
+        seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      }
+
+      Problem<dim>      problem;
+      Vector            u;
+      LinearSolver      solver;
+      EnergyBounds<dim> bounds;
+      double            seconds = 0.;
+    };
+
+
+    /** Of a function, by differences. */
+    template <int dim>
+    Tensor<1, dim> gradient_of(const Function<dim> &f, const Point<dim> &p)
+    {
+      constexpr double step = 1e-5;
+      Tensor<1, dim>   gradient;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          Point<dim> ahead = p, behind = p;
+          ahead[d] += step;
+          behind[d] -= step;
+          gradient[d] = (f(ahead) - f(behind)) / (2. * step);
+        }
+      return gradient;
+    }
+
+
+    /** The energy norm of exact - u, with that of sides with convection. */
+    template <int dim>
+    double energy_error(const Bounded<dim> &solved, const Function<dim> &exact)
+    {
+      const auto &dofs  = solved.problem.handler;
+      const auto &scene = solved.problem.scene;
+      IndexSet    relevant;
+      DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+      Vector u(dofs.locally_owned_dofs(), relevant, dofs.get_communicator());
+      u.copy_locally_owned_data_from(solved.u);
+      u.update_ghost_values();
+      const unsigned int          n = dofs.get_fe().degree + 2;
+      FEValues<dim>               values(dofs.get_fe(),
+                           QIterated<dim>(QGauss<1>(n), dim == 3 ? 1 : 4),
+                           update_gradients | update_quadrature_points | update_JxW_values);
+      FEFaceValues<dim>           on_face(dofs.get_fe(),
+                                QGauss<dim - 1>(n + 2),
+                                update_values | update_quadrature_points | update_JxW_values);
+      std::vector<Tensor<1, dim>> gradients(values.n_quadrature_points);
+      std::vector<double>         at_face(on_face.n_quadrature_points);
+      double                      square = 0.;
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            values.reinit(cell);
+            values.get_function_gradients(u, gradients);
+            for (const unsigned int q : values.quadrature_point_indices())
+              square +=
+                values.JxW(q) * scene.material.conductivity.value(values.quadrature_point(q)) *
+                (gradient_of<dim>(exact, values.quadrature_point(q)) - gradients[q]).norm_square();
+            for (const unsigned int f : cell->face_indices())
+              for (const SurfaceTransfer &transfer : scene.boundary_conditions.transfers)
+                if (cell->at_boundary(f) && cell->face(f)->boundary_id() == transfer.id &&
+                    transfer.fixes_level())
+                  {
+                    on_face.reinit(cell, f);
+                    on_face.get_function_values(u, at_face);
+                    for (const unsigned int q : on_face.quadrature_point_indices())
+                      square += on_face.JxW(q) *
+                                transfer.coefficient.value(on_face.quadrature_point(q)) *
+                                std::pow(exact(on_face.quadrature_point(q)) - at_face[q], 2);
+                  }
+          }
+      return std::sqrt(sum_of_all(square));
+    }
+
+
+    /** kappa is 1 at x < 1/2 and 100 beyond; u = X(x) cos(pi y), insulated below and above. */
+    Case<2> jump()
+    {
+      constexpr double pi = numbers::PI;
+      const auto       u  = [](const Point<2> &p) {
+        const double x = p[0] - 0.5;
+        return (x < 0. ? std::sinh(pi * p[0]) :
+                                std::sinh(0.5 * pi) * std::cosh(pi * x) +
+                           0.01 * std::cosh(0.5 * pi) * std::sinh(pi * x)) *
+               std::cos(pi * p[1]);
+      };
+      const std::string right = std::to_string(u({1., 0.}));
+      return {"jump",
+              {{"Time/Steady", "true"},
+               {"Material/Conductivity", "1"},
+               {"Material/Phases/Regions", "dense: x > 0.5"},
+               {"Material/Phases/Conductivity", "dense: 100"},
+               {"Boundary conditions/Dirichlet",
+                "left: 0 ; right: (sinh(pi/2)*cosh(pi/2) + 0.01*cosh(pi/2)*sinh(pi/2))*cos(pi*y)"}},
+              u,
+              {Goal<2>::flow_through("left")},
+              {-0.}};
+    }
+
+
+    /** A Gmsh file of the square [-1, 1]^2 without its lower right quarter, 2 n cells a side. */
+    std::string angle_mesh(const unsigned int n)
+    {
+      const std::string name = (std::filesystem::temp_directory_path() /
+                                ("perideal_" + std::to_string(getpid()) + "_angle.msh"))
+                                 .string();
+      std::ofstream file(name);
+      file.precision(17);
+      const unsigned int m = 2 * n + 1;
+      file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << m * m - n * n << '\n';
+      std::vector<unsigned int> number(m * m, 0);
+      unsigned int              last = 0;
+      for (unsigned int j = 0; j < m; ++j)
+        for (unsigned int i = 0; i < m; ++i)
+          if (i <= n || j >= n)
+            {
+              number[j * m + i] = ++last;
+              file << last << ' ' << double(i) / n - 1. << ' ' << double(j) / n - 1. << " 0\n";
+            }
+      file << "$EndNodes\n$Elements\n" << 3 * n * n << '\n';
+      last = 0;
+      for (unsigned int j = 0; j < 2 * n; ++j)
+        for (unsigned int i = 0; i < 2 * n; ++i)
+          if (i < n || j >= n)
+            {
+              const unsigned int v = j * m + i;
+              file << ++last << " 3 2 1 1 " << number[v] << ' ' << number[v + 1] << ' '
+                   << number[v + m + 1] << ' ' << number[v + m] << '\n';
+            }
+      file << "$EndElements\n";
+      return name;
+    }
+
+
+    /** u = r^(2/3) sin(2 phi/3) around the corner of an angle. */
+    Case<2> corner(const unsigned int n)
+    {
+      const auto u = [](const Point<2> &p) {
+        double phi = std::atan2(p[1], p[0]);
+        if (phi < -1e-12)
+          phi += 2. * numbers::PI;
+        return std::pow(p.norm(), 2. / 3.) * std::sin(2. * phi / 3.);
+      };
+      return {"corner",
+              {{"Time/Steady", "true"},
+               {"Domain/Shape", "mesh file"},
+               {"Domain/Mesh file", angle_mesh(n)},
+               {"Boundary conditions/Dirichlet",
+                "0: (x^2+y^2)^(1/3)*sin(2/3*(atan2(y,x) + (atan2(y,x) < -1e-12 ? 2*pi : 0)))"}},
+              u,
+              {},
+              {}};
+    }
+
+
+    /** Error, bound, effectivity; returns the latter. */
+    template <int dim>
+    double effectivity(const Case<dim> &test, const Settings &more, const std::string &words)
+    {
+      const Bounded<dim> solved(test.settings + more);
+      const EnergyBound  bound = solved.bounds.of(solved.u);
+      const double       error = energy_error<dim>(solved, test.exact);
+      EXPECT_EQ(bound.reservation, "") << test.name;
+      if (with_tables() && this_process() == 0)
+        std::printf("| %s | %s | %.3e | %.3e | %.3f | %.1e | %.1e | %.1e | %.2f |\n",
+                    test.name.c_str(),
+                    words.c_str(),
+                    error,
+                    bound.bound,
+                    bound.bound / error,
+                    bound.oscillation / bound.bound,
+                    bound.values / bound.bound,
+                    bound.remainder / bound.bound,
+                    bound.seconds / solved.seconds);
+      return bound.bound / error;
+    }
+  } // namespace
+
+
+  TEST(EnergyBounds, never_below_the_error)
+  {
+    using Counts      = std::vector<unsigned int>;
+    const Counts flat = with_tables() ? Counts{8, 16, 32, 64} : Counts{8, 16};
+    for (const unsigned int p : {1, 2, 3})
+      for (const unsigned int n : flat)
+        {
+          const std::string    words = "Q" + std::to_string(p) + " | " + std::to_string(n);
+          std::vector<Case<2>> tests{smooth(), mixed(), layer(), graded(), jump(), crack("faces")};
+          for (const Case<2> &test : tests)
+            {
+              const double ratio = effectivity<2>(test, cells(n) + degree(p), words);
+              EXPECT_GT(ratio, 1. - 1e-6) << test.name << ' ' << words;
+              EXPECT_LT(ratio, 2.) << test.name << ' ' << words;
+            }
+          for (const Case<2> &test : {distorted(n), corner(n / 2)})
+            {
+              const double ratio = effectivity<2>(test, degree(p), words);
+              EXPECT_GT(ratio, 1. - 1e-6) << test.name << ' ' << words;
+              EXPECT_LT(ratio, 2.) << test.name << ' ' << words;
+            }
+          Case<2> hanging = smooth();
+          hanging.name    = "hanging nodes";
+          if (n >= 16)
+            {
+              const double ratio = effectivity<2>(
+                hanging,
+                cells(n) + degree(p) +
+                  Settings{{"Domain/Coarsening", "1"}, {"Domain/Fine where", "0.3 - x"}},
+                words);
+              EXPECT_GT(ratio, 1. - 1e-6) << words;
+              EXPECT_LT(ratio, 2.) << words;
+            }
+        }
+  }
+
+
+  TEST(EnergyBounds, in_three_dimensions)
+  {
+    for (const unsigned int p : {1, 2})
+      for (const unsigned int n : {4, 8})
+        {
+          const std::string words = "Q" + std::to_string(p) + " | " + std::to_string(n);
+          const double      ratio = effectivity<3>(cube(), cells(n, 3) + degree(p), words);
+          EXPECT_GT(ratio, 1. - 1e-6) << words;
+          EXPECT_LT(ratio, 2.) << words;
+        }
+  }
+} // namespace PeriDeal
