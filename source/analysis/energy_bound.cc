@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "equilibrated_flux.h"
 #include "value_lifting.h"
@@ -258,12 +259,15 @@ namespace PeriDeal
         solution.problem,
         cell,
         [&](const unsigned int f, const auto side, const MappedPoints<dim> &at, const double rim) {
-          double h = 0.;
-          for (unsigned int q = 0; q < at.points.size(); ++q)
-            h += rim * mesh.unit.on_faces[f].weights[q] * at.area(q, f) *
-                 transfer_coefficient(solution.problem, side, at.points[q]);
-          if (h > 0.)
-            least_h = std::min(least_h, h);
+          Eigen::VectorXd h(at.points.size());
+          for (unsigned int q = 0; q < h.size(); ++q)
+            h[q] = rim * mesh.unit.on_faces[f].weights[q] * at.area(q, f) *
+                   transfer_coefficient(solution.problem, side, at.points[q]);
+          if (!(h.sum() > 0.))
+            return;
+          least_h = std::min(least_h, h.sum());
+          if (dim == 3 && lift.size() > 0)
+            squares[3] += h.dot(lifting.values_on_face(lift, f).cwiseAbs2());
         });
     });
     for (unsigned int k = 0; k < squares.size(); ++k)
@@ -547,7 +551,11 @@ namespace PeriDeal
       }
     bound.value       = parts->op.balance(u, t, true).sides.at(side);
     bound.reservation = primal->bound.reservation;
-    bound.seconds     = seconds_since(start);
+    if (dim == 3 && given.transfers_fix_level() &&
+        primal->bound.values > 1e-10 * primal->bound.flux && bound.reservation.empty())
+      bound.reservation =
+        "Sides with values that are no polynomials may meet some with convection.";
+    bound.seconds = seconds_since(start);
     return bound;
   }
 

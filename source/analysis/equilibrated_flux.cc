@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -19,9 +20,11 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    void distribute_linear(DoFHandler<dim> &dofs)
+    std::unique_ptr<DoFHandler<dim>> vertex_dofs(const Triangulation<dim> &mesh)
     {
-      dofs.distribute_dofs(FE_Q<dim>(1));
+      auto dofs = std::make_unique<DoFHandler<dim>>(mesh);
+      dofs->distribute_dofs(FE_Q<dim>(1));
+      return dofs;
     }
 
 
@@ -44,13 +47,12 @@ namespace PeriDeal
     , rim(body.boundary_conditions.holes, op.dof_handler().get_triangulation())
     , condensed(unit)
     , op(op)
-    , linear(op.dof_handler().get_triangulation())
-    , hanging((distribute_linear(linear), linear),
-              *element_layout(linear, static_cast<const Coupling<dim> *>(nullptr)))
+    , linear(vertex_dofs(op.dof_handler().get_triangulation()))
+    , hanging(*linear, *element_layout(*linear, static_cast<const Coupling<dim> *>(nullptr)))
   {
     types::global_dof_index begin = 0;
     for (const auto n :
-         Utilities::MPI::all_gather(linear.get_communicator(), linear.n_locally_owned_dofs()))
+         Utilities::MPI::all_gather(linear->get_communicator(), linear->n_locally_owned_dofs()))
       {
         begins.push_back(begin);
         begin += n;
@@ -61,15 +63,19 @@ namespace PeriDeal
   template <int dim>
   typename FluxMesh<dim>::HatsInCell FluxMesh<dim>::hats(const Cell &cell) const
   {
-    constexpr unsigned int n  = GeometryInfo<dim>::vertices_per_cell;
-    const Cell             at = linear_cell(cell);
-    HatsInCell             result;
-    const auto             add =
+    const Cell at = linear_cell(cell);
+    HatsInCell result;
+    const auto add =
       [&](const types::global_dof_index vertex, const unsigned int v, const double weight) {
-        Eigen::VectorXd &hat = result.try_emplace(vertex, Eigen::VectorXd::Zero(n)).first->second;
-        hat[v] += weight;
+        const auto found = std::find_if(result.begin(), result.end(), [&](const auto &hat) {
+          return hat.first == vertex;
+        });
+        if (found == result.end())
+          result.emplace_back(vertex, weight * Hat::Unit(v));
+        else
+          found->second[v] += weight;
       };
-    for (unsigned int v = 0; v < n; ++v)
+    for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell; ++v)
       {
         const auto        vertex = at->vertex_dof_index(v, 0);
         const auto *const masters =
@@ -258,14 +264,28 @@ namespace PeriDeal
     piece.owner     = process;
     piece.factor    = factor * volumes.sum() / volumes.dot(in_cell.conductivity);
     piece.condensed = condensed;
-    for (const auto &[vertex, hat] : mesh.hats(cell))
+    piece.faces     = std::move(places);
+    deal_out(corners, mesh.hats(cell), hats.divergence.row(0), loads, given, piece);
+  }
+
+
+  /** Give each vertex what its hat makes of a cell, @p piece, which knows all else already. */
+  template <int dim>
+  void EquilibratedFlux<dim>::deal_out(const CellCorners<dim>                   &corners,
+                                       const typename FluxMesh<dim>::HatsInCell &hats,
+                                       const Eigen::RowVectorXd                 &means,
+                                       const Eigen::MatrixXd                    &loads,
+                                       const Eigen::MatrixXd                    &given,
+                                       PatchCell                                &piece)
+  {
+    const std::vector<FacePlace> places = piece.faces;
+    for (const auto &[vertex, hat] : hats)
       {
         hat.maxCoeff(&piece.corner);
         piece.vertex = vertex;
-        piece.mean   = hats.divergence.row(0) * hat;
+        piece.mean   = means * hat;
         piece.loads  = loads * hat;
         piece.given  = given * hat;
-        piece.faces  = places;
         for (unsigned int f = 0; f < places.size(); ++f)
           if (places[f].state == FacePlace::open)
             {
@@ -274,18 +294,18 @@ namespace PeriDeal
                 on_face += hat[corner_of_face<dim>(f, j)];
               piece.faces[f].state = on_face > 0. ? FacePlace::open : FacePlace::given;
             }
-        if (mesh.owner(vertex) == process)
+        if (const unsigned int owner = mesh.owner(vertex); owner == process)
           found.push_back(piece);
         else
-          messages[mesh.owner(vertex)].push_back({piece.vertex,
-                                                  piece.cell,
-                                                  piece.corner,
-                                                  piece.factor,
-                                                  piece.mean,
-                                                  piece.faces,
-                                                  as_list(piece.loads),
-                                                  as_list(piece.given),
-                                                  {corners.begin(), corners.end()}});
+          messages[owner].push_back({vertex,
+                                     piece.cell,
+                                     piece.corner,
+                                     piece.factor,
+                                     piece.mean,
+                                     piece.faces,
+                                     as_list(piece.loads),
+                                     as_list(piece.given),
+                                     {corners.begin(), corners.end()}});
       }
   }
 
@@ -386,7 +406,7 @@ namespace PeriDeal
   template <int dim>
   CellField<dim> EquilibratedFlux<dim>::field(const Cell &cell) const
   {
-    return CellField<dim>(mesh.unit, corners_of<dim>(cell), problem, mesh.numbers(cell, u));
+    return CellField<dim>(mesh.unit, corners_of<dim>(cell), problem, mesh.numbers(cell, u), false);
   }
 
 
@@ -396,8 +416,14 @@ namespace PeriDeal
   {
     const Eigen::VectorXd &c    = sums[cell->active_cell_index()].loads;
     Eigen::MatrixXd        flux = Eigen::MatrixXd::Zero(dim, field.values.size());
-    for (unsigned int i = 0; i < c.size(); ++i)
-      flux.row(mesh.unit.basis.direction[i]) += c[i] * mesh.unit.fluxes.row(i);
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const auto     &with = mesh.unit.numbers_along[d];
+        Eigen::VectorXd numbers(with.size());
+        for (unsigned int i = 0; i < with.size(); ++i)
+          numbers[i] = c[with[i]];
+        flux.row(d) = numbers.transpose() * mesh.unit.along[d];
+      }
     for (unsigned int q = 0; q < field.values.size(); ++q)
       {
         const auto  &map   = field.at.maps[q];

@@ -29,7 +29,8 @@ namespace PeriDeal
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
     /** Vertices that do not hang, and what their hats are at those of a cell. */
-    using HatsInCell = std::map<dealii::types::global_dof_index, Eigen::VectorXd>;
+    using Hat        = Eigen::Matrix<double, dealii::GeometryInfo<dim>::vertices_per_cell, 1>;
+    using HatsInCell = std::vector<std::pair<dealii::types::global_dof_index, Hat>>;
 
     /** op must outlive this. Collective. */
     FluxMesh(const FEMOperator<dim> &op, const BodyParameters<dim> &body);
@@ -57,13 +58,13 @@ namespace PeriDeal
   private:
     Cell linear_cell(const Cell &cell) const
     {
-      return {&linear.get_triangulation(), cell->level(), cell->index(), &linear};
+      return {&linear->get_triangulation(), cell->level(), cell->index(), linear.get()};
     }
 
-    const FEMOperator<dim>                      &op;
-    dealii::DoFHandler<dim>                      linear;
-    const HangingNodes<dim>                      hanging;
-    std::vector<dealii::types::global_dof_index> begins; // vertices of each process
+    const FEMOperator<dim>                        &op;
+    const std::unique_ptr<dealii::DoFHandler<dim>> linear;
+    const HangingNodes<dim>                        hanging;
+    std::vector<dealii::types::global_dof_index>   begins; // vertices of each process
   };
 
 
@@ -189,6 +190,12 @@ namespace PeriDeal
                    const double            conductivity,
                    std::vector<FacePlace> &places,
                    Eigen::MatrixXd        &given);
+    void deal_out(const CellCorners<dim>                   &corners,
+                  const typename FluxMesh<dim>::HatsInCell &hats,
+                  const Eigen::RowVectorXd                 &means,
+                  const Eigen::MatrixXd                    &loads,
+                  const Eigen::MatrixXd                    &given,
+                  PatchCell                                &piece);
     void exchange_messages();
     void take_found();
     void finish();

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace PeriDeal
 {
@@ -59,6 +60,14 @@ namespace PeriDeal
         fluxes.col(q)       = basis.values(p);
         inside.products.col(q) =
           legendre_products(basis.k + 1, std::vector<double>(p.begin_raw(), p.end_raw()));
+      }
+    for (unsigned int i = 0; i < basis.n; ++i)
+      numbers_along[basis.direction[i]].push_back(i);
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        along[d].resize(numbers_along[d].size(), quadrature.size());
+        for (unsigned int i = 0; i < numbers_along[d].size(); ++i)
+          along[d].row(i) = fluxes.row(numbers_along[d][i]);
       }
     const QGauss<1>    line(fe.degree + 3);
     const unsigned int n = dim == 1 ? 1 : dim == 2 ? line.size() : line.size() * line.size();
@@ -123,7 +132,8 @@ namespace PeriDeal
   CellField<dim>::CellField(const UnitCell<dim>    &unit,
                             const CellCorners<dim> &corners,
                             const FluxProblem<dim> &problem,
-                            const Eigen::VectorXd  &u)
+                            const Eigen::VectorXd  &u,
+                            const bool              with_source)
     : at(unit.inside, corners)
     , conductivity(at.points.size())
     , source(at.points.size())
@@ -133,8 +143,9 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       gradient.row(d) = u.transpose() * unit.inside.shape_gradients[d];
     const auto &kappa    = problem.material->conductivity;
-    const bool  constant = problem.source.is_constant();
-    source.setConstant(constant ? problem.source.value(Point<dim>(), problem.time) : 0.);
+    const bool  constant = !with_source || problem.source.is_constant();
+    source.setConstant(with_source && constant ? problem.source.value(Point<dim>(), problem.time) :
+                                                 0.);
     conductivity.setConstant(kappa.is_constant() ? kappa.value(at.points[0]) : 1.);
     for (unsigned int q = 0; q < at.points.size(); ++q)
       {
@@ -258,19 +269,10 @@ namespace PeriDeal
     const auto   found  = known.find(key);
     if (found != known.end())
       return {found->second, factor};
-    const MappedPoints<dim>                    at(unit.inside, unit_size);
-    const unsigned int                         n = unit.basis.n, n_points = at.points.size();
-    Eigen::MatrixXd                            mass = Eigen::MatrixXd::Zero(n, n);
-    std::array<std::vector<unsigned int>, dim> with; // functions with this component
-    for (unsigned int i = 0; i < n; ++i)
-      with[unit.basis.direction[i]].push_back(i);
-    std::array<Eigen::MatrixXd, dim> values;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        values[d].resize(with[d].size(), n_points);
-        for (unsigned int i = 0; i < with[d].size(); ++i)
-          values[d].row(i) = unit.fluxes.row(with[d][i]);
-      }
+    const MappedPoints<dim> at(unit.inside, unit_size);
+    const unsigned int      n = unit.basis.n, n_points = at.points.size();
+    Eigen::MatrixXd         mass = Eigen::MatrixXd::Zero(n, n);
+    const auto             &with = unit.numbers_along;
     for (unsigned int d = 0; d < dim; ++d)
       for (unsigned int e = 0; e <= d; ++e)
         {
@@ -280,7 +282,8 @@ namespace PeriDeal
                         at.determinants[q];
           if (metric.cwiseAbs().maxCoeff() < 1e-14)
             continue;
-          const Eigen::MatrixXd block = values[d] * metric.asDiagonal() * values[e].transpose();
+          const Eigen::MatrixXd block =
+            unit.along[d] * metric.asDiagonal() * unit.along[e].transpose();
           for (unsigned int i = 0; i < with[d].size(); ++i)
             for (unsigned int j = 0; j < with[e].size(); ++j)
               {
@@ -296,6 +299,38 @@ namespace PeriDeal
       }
     return {condensed, factor};
   }
+
+
+  namespace
+  {
+    /** Which corner, middle of an edge or of all of a face a point is, in halves of the face. */
+    template <int dim, typename Cell>
+    std::array<int, 2> halves_on_face(const Cell        &cell,
+                                      const unsigned int face,
+                                      const Point<dim>  &p)
+    {
+      std::array<int, 2> best{};
+      double             nearest = std::numeric_limits<double>::max();
+      for (int i = 0; i < (dim == 3 ? 9 : 3); ++i)
+        {
+          const std::array<int, 2> at{i % 3, i / 3};
+          Point<dim>               there;
+          for (unsigned int c = 0; c < GeometryInfo<dim>::vertices_per_cell / 2; ++c)
+            {
+              double weight = 1.;
+              for (unsigned int a = 0; a < dim - 1; ++a)
+                weight *= (c >> a) & 1 ? 0.5 * at[a] : 1. - 0.5 * at[a];
+              there += weight * cell->vertex(corner_of_face<dim>(face, c));
+            }
+          if (there.distance(p) < nearest)
+            {
+              nearest = there.distance(p);
+              best    = at;
+            }
+        }
+      return best;
+    }
+  } // namespace
 
 
   template <int dim>
@@ -331,27 +366,8 @@ namespace PeriDeal
     const auto of_corner = [&](const unsigned int j) {
       if (larger == typename DoFHandler<dim>::cell_iterator(cell))
         return ordered({2 * static_cast<int>(j & 1), 2 * static_cast<int>(j >> 1)});
-      const Point<dim>   p = cell->vertex(corner_of_face<dim>(face, j));
-      std::array<int, 2> best{};
-      double             nearest = std::numeric_limits<double>::max();
-      for (int i = 0; i < (dim == 3 ? 9 : 3); ++i)
-        {
-          const std::array<int, 2> at{i % 3, i / 3};
-          Point<dim>               there;
-          for (unsigned int c = 0; c < n; ++c)
-            {
-              double weight = 1.;
-              for (unsigned int a = 0; a < dim - 1; ++a)
-                weight *= (c >> a) & 1 ? 0.5 * at[a] : 1. - 0.5 * at[a];
-              there += weight * larger->vertex(corner_of_face<dim>(face_of_larger, c));
-            }
-          if (there.distance(p) < nearest)
-            {
-              nearest = there.distance(p);
-              best    = at;
-            }
-        }
-      return ordered(best);
+      return ordered(
+        halves_on_face<dim>(larger, face_of_larger, cell->vertex(corner_of_face<dim>(face, j))));
     };
     place.origin = of_corner(0);
     for (unsigned int a = 0; a < dim - 1; ++a)
@@ -387,14 +403,17 @@ namespace PeriDeal
     for (unsigned int d = 0; d < dim; ++d)
       of_hats -= inside.weights.cwiseProduct(flux.row(d).transpose()).asDiagonal() *
                  inside.hat_gradients[d].transpose();
-    divergence                               = inside.products * of_hats;
-    const Eigen::VectorXd            weights = inside.weights.cwiseProduct(field.conductivity);
-    std::array<Eigen::MatrixXd, dim> weighted;
+    divergence                    = inside.products * of_hats;
+    const Eigen::VectorXd weights = inside.weights.cwiseProduct(field.conductivity);
     for (unsigned int d = 0; d < dim; ++d)
-      weighted[d] = weights.cwiseProduct(field.gradient.row(d).transpose()).asDiagonal() *
-                    inside.hats.transpose();
-    for (unsigned int i = 0; i < unit.basis.n; ++i)
-      loads.row(i) = -unit.fluxes.row(i) * weighted[unit.basis.direction[i]];
+      {
+        const Eigen::MatrixXd weighted =
+          weights.cwiseProduct(field.gradient.row(d).transpose()).asDiagonal() *
+          inside.hats.transpose();
+        const Eigen::MatrixXd along = unit.along[d] * weighted;
+        for (unsigned int i = 0; i < along.rows(); ++i)
+          loads.row(unit.numbers_along[d][i]) = -along.row(i);
+      }
   }
 
 

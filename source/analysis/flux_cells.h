@@ -62,6 +62,10 @@ namespace PeriDeal
     UnitPoints<dim>              inside, lifting; // the same points
     std::vector<UnitPoints<dim>> on_faces;
     Eigen::MatrixXd              fluxes; // at the points inside
+
+    /** Those with one component each, and their numbers. */
+    std::array<Eigen::MatrixXd, dim>           along;
+    std::array<std::vector<unsigned int>, dim> numbers_along;
   };
 
 
@@ -89,7 +93,8 @@ namespace PeriDeal
     CellField(const UnitCell<dim>    &unit,
               const CellCorners<dim> &corners,
               const FluxProblem<dim> &problem,
-              const Eigen::VectorXd  &u);
+              const Eigen::VectorXd  &u,
+              const bool              with_source = true);
 
     MappedPoints<dim> at;
     Eigen::VectorXd   conductivity, source, values;

@@ -128,5 +128,24 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  Eigen::VectorXd ValueLifting<dim>::values_on_face(const Eigen::VectorXd &numbers,
+                                                    const unsigned int     face) const
+  {
+    const Eigen::MatrixXd &hats = mesh.unit.on_faces[face].hats;
+    Eigen::VectorXd        result(hats.cols());
+    for (unsigned int q = 0; q < result.size(); ++q)
+      {
+        Point<dim> p;
+        for (unsigned int v = 0; v < hats.rows(); ++v)
+          p += hats(v, q) * GeometryInfo<dim>::unit_cell_vertex(v);
+        result[q] = 0.;
+        for (unsigned int i = 0; i < numbers.size(); ++i)
+          result[q] += numbers[i] * mesh.unit.lifting_element.shape_value(i, p);
+      }
+    return result;
+  }
+
+
   PERIDEAL_INSTANTIATE_CLASS(class ValueLifting);
 } // namespace PeriDeal

@@ -28,6 +28,9 @@ namespace PeriDeal
     /** At the points inside the cell, with respect to coordinates of the unit cell. */
     Eigen::MatrixXd gradient(const Eigen::VectorXd &numbers) const;
 
+    /** At the points on a face. */
+    Eigen::VectorXd values_on_face(const Eigen::VectorXd &numbers, const unsigned int face) const;
+
     /** A value ends within a face of this process. */
     bool is_cut() const
     {

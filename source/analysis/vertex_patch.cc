@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <tuple>
 
 namespace PeriDeal
@@ -56,6 +57,32 @@ namespace PeriDeal
         if (place[a] != 0 || place[2 + 3 * a] != 2)
           return false;
       return true;
+    }
+
+
+    /** Of each cell the number of its group, -1 where a face of the group is open. */
+    template <typename Part>
+    std::vector<int> closed_groups(const std::vector<PatchCell> &cells,
+                                   const std::vector<Part>      &parts)
+    {
+      std::vector<int>  group(cells.size());
+      std::vector<char> open(cells.size(), 0);
+      std::iota(group.begin(), group.end(), 0);
+      const auto join = [&](const int a, const int b) {
+        std::replace(group.begin(), group.end(), std::max(a, b), std::min(a, b));
+      };
+      for (const Part &a : parts)
+        for (const Part &b : parts)
+          if (a.unknown == b.unknown && group[a.cell] != group[b.cell])
+            join(group[a.cell], group[b.cell]);
+      for (const Part &part : parts)
+        if (cells[part.cell].faces[part.face].state == FacePlace::open)
+          open[group[part.cell]] = 1;
+      std::map<int, int> numbers;
+      std::vector<int>   result;
+      for (const int g : group)
+        result.push_back(open[g] ? -1 : numbers.try_emplace(g, numbers.size()).first->second);
+      return result;
     }
 
 
@@ -172,11 +199,11 @@ namespace PeriDeal
                                       const std::vector<double>    &factors,
                                       const std::vector<Part>      &parts,
                                       const unsigned int            n_unknown,
-                                      const bool                    closed) const
+                                      const std::vector<int>       &groups) const
   {
     const unsigned int n_fluxes = n_unknown * n_of_face, n_cells = cells.size();
-    Eigen::MatrixXd    matrix =
-      Eigen::MatrixXd::Zero(n_fluxes + n_cells + closed, n_fluxes + n_cells + closed);
+    const unsigned int n = n_fluxes + n_cells + *std::max_element(groups.begin(), groups.end()) + 1;
+    Eigen::MatrixXd    matrix = Eigen::MatrixXd::Zero(n, n);
     for (const Part &a : parts)
       {
         for (const Part &b : parts)
@@ -201,11 +228,12 @@ namespace PeriDeal
         matrix.block(a.unknown * n_of_face, n_fluxes + a.cell, n_of_face, 1) +=
           a.sign * mean.transpose();
       }
-    if (closed)
-      {
-        matrix.block(n_fluxes + n_cells, n_fluxes, 1, n_cells).setOnes();
-        matrix.block(n_fluxes, n_fluxes + n_cells, n_cells, 1).setOnes();
-      }
+    for (unsigned int c = 0; c < n_cells; ++c)
+      if (groups[c] >= 0)
+        {
+          matrix(n_fluxes + n_cells + groups[c], n_fluxes + c) = 1.;
+          matrix(n_fluxes + c, n_fluxes + n_cells + groups[c]) = 1.;
+        }
     return matrix;
   }
 
@@ -215,7 +243,7 @@ namespace PeriDeal
     const std::vector<double>    &factors,
     const std::vector<Part>      &parts,
     const unsigned int            n_unknown,
-    const bool                    closed)
+    const std::vector<int>       &groups)
   {
     Key  key;
     bool keeps = n_kept < most_kept;
@@ -233,11 +261,11 @@ namespace PeriDeal
         key.push_back(part.cell + 256 * (part.face + 8 * part.unknown));
         key.push_back(code);
       }
-    key.push_back(closed);
+    key.insert(key.end(), groups.begin(), groups.end());
     const auto found = known.find(key);
     if (found != known.end())
       return found->second;
-    auto lu = std::make_shared<const LU>(matrix(cells, factors, parts, n_unknown, closed));
+    auto lu = std::make_shared<const LU>(matrix(cells, factors, parts, n_unknown, groups));
     if (keeps)
       {
         n_kept += lu->matrixLU().size();
@@ -254,18 +282,15 @@ namespace PeriDeal
     });
     unsigned int            n_unknown = 0;
     const std::vector<Part> parts     = parts_of(cells, n_unknown);
-    bool                    closed    = true;
-    for (const PatchCell &cell : cells)
-      for (const FacePlace &face : cell.faces)
-        closed = closed && face.state != FacePlace::open;
+    const std::vector<int>  groups    = closed_groups(cells, parts);
     // Any factors give fluxes in balance; these serve many vertices.
     std::vector<double> factors;
     for (const PatchCell &cell : cells)
       factors.push_back(std::exp2(
         std::round(factor_steps * std::log2(cell.factor / cells[0].factor)) / factor_steps));
-    const auto                   lu       = factorization(cells, factors, parts, n_unknown, closed);
+    const auto                   lu       = factorization(cells, factors, parts, n_unknown, groups);
     const unsigned int           n_fluxes = n_unknown * n_of_face;
-    Eigen::VectorXd              rhs      = Eigen::VectorXd::Zero(n_fluxes + cells.size() + closed);
+    Eigen::VectorXd              rhs      = Eigen::VectorXd::Zero(lu->rows());
     std::vector<Eigen::VectorXd> fluxes(cells.size());
     for (unsigned int c = 0; c < cells.size(); ++c)
       {

@@ -66,7 +66,8 @@ namespace PeriDeal
    * Fluxes through the faces of the cells around a vertex: those that make sum of factor (o
    * stiffness o/2 - loads o) the smallest, where the fluxes through all faces that are not shared
    * by two of the cells and are not open are given, others are continuous, and out of each cell
-   * flows its mean. Where no face is open, all means are changed by one number so that they can be.
+   * flows its mean. Where no face of cells that share faces is open, all of their means are changed
+   * by one number so that they can be.
    * Factorizations are kept, and serve all vertices around which all is alike.
    */
   class PatchSolver
@@ -97,12 +98,12 @@ namespace PeriDeal
                                   const std::vector<double>    &factors,
                                   const std::vector<Part>      &parts,
                                   const unsigned int            n_unknown,
-                                  const bool                    closed) const;
+                                  const std::vector<int>       &groups) const;
     std::shared_ptr<const LU> factorization(const std::vector<PatchCell> &cells,
                                             const std::vector<double>    &factors,
                                             const std::vector<Part>      &parts,
                                             const unsigned int            n_unknown,
-                                            const bool                    closed);
+                                            const std::vector<int>       &groups);
 
     const unsigned int                            n_coordinates, k, n_of_face;
     std::map<std::array<int, 6>, Eigen::MatrixXd> transformations;

@@ -42,7 +42,9 @@ namespace PeriDeal
         })
       {
         EXPECT_EQ(EnergyBounds<dim>::why_not(problem.scene), "");
-        const auto start = std::chrono::steady_clock::now();
+        // As long as operator and solution take.
+        const auto             start = std::chrono::steady_clock::now();
+        const FEMOperator<dim> again(problem.handler, problem.scene);
         solve_steady(problem.op(), u, 0., 1e-12, 4000);
         seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       }
@@ -130,7 +132,6 @@ namespace PeriDeal
                            0.01 * std::cosh(0.5 * pi) * std::sinh(pi * x)) *
                std::cos(pi * p[1]);
       };
-      const std::string right = std::to_string(u({1., 0.}));
       return {"jump",
               {{"Time/Steady", "true"},
                {"Material/Conductivity", "1"},
@@ -260,15 +261,198 @@ namespace PeriDeal
   }
 
 
-  TEST(EnergyBounds, in_three_dimensions)
+  TEST(EnergyBounds, in_one_and_three_dimensions)
   {
+    const auto    wave = [](const Point<1> &p) { return std::sin(numbers::PI * p[0]); };
+    const Case<1> line{"line",
+                       {{"Time/Steady", "true"},
+                        {"Initial and source/Source", "pi^2*sin(pi*x)"},
+                        {"Boundary conditions/Dirichlet", "left: 0"},
+                        {"Boundary conditions/Flux", "right: -pi"}},
+                       wave,
+                       {},
+                       {}};
+    const auto    u = [](const Point<3> &p) { return std::exp(p[0]) * std::sin(p[1] + p[2]); };
+    const Case<3> block{"block",
+                        {{"Time/Steady", "true"},
+                         {"Initial and source/Source", "exp(x)*sin(y+z)"},
+                         {"Boundary conditions/Dirichlet", "left: sin(y+z) ; top: exp(x)*sin(1+z)"},
+                         {"Boundary conditions/Flux",
+                          "bottom: -exp(x)*cos(z) ; back: -exp(x)*cos(y) ; front: exp(x)*cos(y+1)"},
+                         {"Boundary conditions/Convection", "right: 2, 1.5*exp(1)*sin(y+z)"}},
+                        u,
+                        {},
+                        {}};
+    const auto    check = [](const double ratio, const std::string &words) {
+      EXPECT_GT(ratio, 1. - 1e-6) << words;
+      EXPECT_LT(ratio, 2.) << words;
+    };
+    for (const unsigned int p : {1, 2, 3})
+      check(effectivity<1>(line, cells(8, 1) + degree(p), "Q" + std::to_string(p) + " | 8"),
+            "line");
     for (const unsigned int p : {1, 2})
       for (const unsigned int n : {4, 8})
         {
           const std::string words = "Q" + std::to_string(p) + " | " + std::to_string(n);
-          const double      ratio = effectivity<3>(cube(), cells(n, 3) + degree(p), words);
-          EXPECT_GT(ratio, 1. - 1e-6) << words;
-          EXPECT_LT(ratio, 2.) << words;
+          if (p == 2 && n == 8 && !with_tables())
+            continue;
+          check(effectivity<3>(cube(), cells(n, 3) + degree(p), words), "cube " + words);
+          check(effectivity<3>(block, cells(n, 3) + degree(p), words), "block " + words);
+          Case<3> other = cube();
+          other.name    = "distorted cube";
+          other.settings =
+            other.settings + Settings{{"Domain/Shape", "mesh file"},
+                                      {"Domain/Mesh file", distorted_mesh<3>(n, 0.2)},
+                                      {"Boundary conditions/Dirichlet", "0: 0"}};
+          check(effectivity<3>(other, degree(p), words), "distorted cube " + words);
+          other      = cube();
+          other.name = "cube, hanging nodes";
+          check(
+            effectivity<3>(other,
+                           cells(2 * n, 3) + degree(p) +
+                             Settings{{"Domain/Coarsening", "1"}, {"Domain/Fine where", "0.2 - x"}},
+                           words),
+            other.name + ' ' + words);
         }
+  }
+
+
+  TEST(EnergyBounds, fields_that_elements_have)
+  {
+    const Settings   linear{{"Time/Steady", "true"},
+                          {"Material/Phases/Regions", "dense: x > 0.5"},
+                          {"Material/Phases/Conductivity", "dense: 4"},
+                          {"Boundary conditions/Dirichlet", "left: 0"},
+                          {"Boundary conditions/Convection", "right: 2, 3"}};
+    const Bounded<2> plane(linear + cells(6));
+    EXPECT_LT(plane.bounds.of(plane.u).bound, 1e-8);
+    const Bounded<3> space(linear + cells(4, 3));
+    EXPECT_LT(space.bounds.of(space.u).bound, 1e-8);
+    EXPECT_GT(space.bounds.of(space.u).norm, 0.1);
+  }
+
+
+  namespace
+  {
+    /** What enters through the left of a problem, weighted as the elements do: 1 there. */
+    double weighted_flow(const Case<2> &test, const unsigned int n)
+    {
+      const QGauss<1> line(12);
+      double          flow = 0.;
+      for (unsigned int q = 0; q < line.size(); ++q)
+        {
+          const double s = line.point(q)[0], w = line.weight(q);
+          flow -= w * gradient_of<2>(test.exact, Point<2>(0., s))[0];
+          // 1 at the left end of the first faces of the sides below and above.
+          flow -= w / n * (1. - s) * gradient_of<2>(test.exact, Point<2>(s / n, 0.))[1];
+          flow += w / n * (1. - s) * gradient_of<2>(test.exact, Point<2>(s / n, 1.))[1];
+        }
+      return flow;
+    }
+
+
+    /** The true flow is where it has to be; returns the width over it. */
+    double check_flow(const Case<2>     &test,
+                      const Settings    &more,
+                      const std::string &side,
+                      const double       exact,
+                      const std::string &words)
+    {
+      const Bounded<2> solved(test.settings + more);
+      const FlowBound  flow   = solved.bounds.of_flow_through(side, solved.u);
+      const double     width  = 0.5 * (flow.upper - flow.lower);
+      const double     middle = 0.5 * (flow.upper + flow.lower);
+      EXPECT_LE(flow.lower, exact + 1e-9) << test.name << ' ' << side << ' ' << words;
+      EXPECT_GE(flow.upper, exact - 1e-9) << test.name << ' ' << side << ' ' << words;
+      if (with_tables() && this_process() == 0)
+        std::printf("| %s, %s | %s | %.6f | %.2e | %.2e | %.2e | %.1f |\n",
+                    test.name.c_str(),
+                    side.c_str(),
+                    words.c_str(),
+                    exact,
+                    flow.value - exact,
+                    middle - exact,
+                    width,
+                    flow.seconds / solved.seconds);
+      return width / std::abs(exact);
+    }
+  } // namespace
+
+
+  TEST(EnergyBounds, flows_are_between_their_bounds)
+  {
+    for (const unsigned int p : {1, 2})
+      for (const unsigned int n : {8, 16, 32})
+        {
+          if (n > 16 && !with_tables())
+            continue;
+          const std::string words = "Q" + std::to_string(p) + " | " + std::to_string(n);
+          const Settings    more  = cells(n) + degree(p);
+          const double      most  = p == 1 ? 2. / n : 4. / n / n / n;
+          for (const Case<2> &test : {mixed(), graded()})
+            for (std::size_t k = 2; k < test.goals.size(); ++k)
+              EXPECT_LT(check_flow(test, more, test.goals[k].side, test.values[k], words), most)
+                << test.name << words;
+          if (p == 1)
+            {
+              // Values all around: the trace of the dual solution depends on the mesh.
+              const double s = weighted_flow(smooth(), n);
+              check_flow(smooth(), more, "left", s, words);
+              check_flow(layer(), more, "left", weighted_flow(layer(), n), words);
+            }
+        }
+  }
+
+
+  TEST(EnergyBounds, what_they_cannot_be_had_for)
+  {
+    const auto words = [](const Settings &settings) {
+      Scene<2> scene;
+      set(scene, settings);
+      return EnergyBounds<2>::why_not(scene);
+    };
+    const Settings plain = smooth().settings + cells(8);
+    EXPECT_EQ(words(plain), "");
+    EXPECT_NE(words(crack("pairs").settings + cells(9)), "");
+    EXPECT_EQ(words(crack("faces").settings + cells(8)), "");
+    EXPECT_NE(words(plain + Settings{{"Material/Conductivity", "1 + T^2"}}), "");
+  }
+
+
+  TEST(EnergyBounds, same_on_every_number_of_processes)
+  {
+    const auto compare = [](const auto &of_dim, const Settings &settings, const std::string &name) {
+      constexpr int      dim = std::decay_t<decltype(of_dim)>::dimension;
+      const Bounded<dim> one(settings, MPI_COMM_SELF), all(settings);
+      const EnergyBound  a = one.bounds.of(one.u), b = all.bounds.of(all.u);
+      EXPECT_GT(a.bound, 0.) << name;
+      EXPECT_NEAR(a.bound, b.bound, 1e-7 * a.bound) << name;
+      EXPECT_NEAR(a.flux, b.flux, 1e-7 * a.bound) << name;
+      EXPECT_NEAR(a.values, b.values, 1e-7 * a.bound) << name;
+      EXPECT_NEAR(a.oscillation, b.oscillation, 1e-7 * a.bound) << name;
+      EXPECT_NEAR(a.norm, b.norm, 1e-7 * a.norm) << name;
+      double sum = 0.;
+      for (const double square : b.cells)
+        sum += square;
+      EXPECT_NEAR(std::sqrt(sum_of_all(sum)), a.flux, 1e-7 * a.bound) << name;
+    };
+    const Settings half_fine{{"Domain/Coarsening", "1"}, {"Domain/Fine where", "0.3 - x"}};
+    for (const unsigned int p : {1, 2})
+      {
+        compare(Point<2>(), mixed().settings + cells(16) + degree(p), "mixed");
+        compare(Point<2>(), layer().settings + cells(16) + half_fine + degree(p), "layer");
+        compare(Point<2>(), crack("faces").settings + cells(16) + degree(p), "crack");
+      }
+    compare(Point<2>(), distorted(12).settings, "distorted");
+    compare(Point<3>(), cube().settings + cells(8, 3) + half_fine, "cube");
+    const Settings   flows = mixed().settings + cells(12);
+    const Bounded<2> one(flows, MPI_COMM_SELF), all(flows);
+    for (const std::string side : {"left", "right"})
+      {
+        const FlowBound a = one.bounds.of_flow_through(side, one.u);
+        const FlowBound b = all.bounds.of_flow_through(side, all.u);
+        EXPECT_NEAR(a.lower, b.lower, 1e-9) << side;
+        EXPECT_NEAR(a.upper, b.upper, 1e-9) << side;
+      }
   }
 } // namespace PeriDeal

@@ -45,14 +45,14 @@ namespace PeriDeal
 
 
   /**
-   * Guaranteed bounds of errors of steady diffusion with finite elements Q1 to Q3, by the theorem of
-   * Prager and Synge (doc/estimators.md): with any sigma whose divergence is the source and that
+   * Guaranteed bounds of errors of steady diffusion with finite elements Q1 to Q3, by the theorem
+   * of Prager and Synge (doc/estimators.md): for any sigma whose divergence is the source and that
    * has the given fluxes on the sides, |u - u_h| <= |kappa^{-1/2} (sigma + kappa grad u_h)|. Here
    * sigma is an equilibrated flux from problems around the vertices.
    *
    * Guaranteed means: but for round-off; for source, conductivity and conditions as quadrature of
-   * degree 2 p + 5 sees them, and values on sides as polynomials of degree p + 2 do; in cells without
-   * folds. Cracks have to be faces of the mesh, and to let nothing through.
+   * degree 2 p + 5 sees them, and values on sides as polynomials of degree p + 2 do; in cells
+   * without folds. Cracks have to be faces of the mesh, and to let nothing through.
    */
   template <int dim>
   class EnergyBounds
