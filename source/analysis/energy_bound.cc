@@ -117,7 +117,7 @@ namespace PeriDeal
 
 
     /** Two fluxes, together with what bounds of both need. */
-    struct Squares
+    struct FluxSquares
     {
       double first = 0., second = 0., product = 0.;
 
@@ -424,9 +424,9 @@ namespace PeriDeal
       const CellField<dim>  field  = primal.flux->field(cell);
       const Eigen::MatrixXd first  = primal.flux->difference(cell, field);
       const Eigen::MatrixXd second = dual.flux->difference(cell, dual.flux->field(cell));
-      const Squares         squares{first.squaredNorm(),
-                            second.squaredNorm(),
-                            first.cwiseProduct(second).sum()};
+      const FluxSquares     squares{first.squaredNorm(),
+                                second.squaredNorm(),
+                                first.cwiseProduct(second).sum()};
       const auto  &o = primal.flux->oscillation(cell), &o_dual = dual.flux->oscillation(cell);
       const double more = s * o.cell + o_dual.cell / s;
       sums[0] += std::pow(std::sqrt(squares.of_sum(s, 1. / s)) + more, 2);

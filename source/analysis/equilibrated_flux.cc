@@ -239,10 +239,13 @@ namespace PeriDeal
     const HatLoads<dim>    hats(mesh.unit, in_cell);
     const auto [condensed, factor] = mesh.condensed.of(corners);
     Sums &of_cell                  = sums[cell->active_cell_index()];
-    of_cell.factor                 = factor;
     of_cell.outward                = Eigen::VectorXd::Zero(mesh.unit.basis.n_of_faces);
     of_cell.loads                  = hats.loads.rowwise().sum() / factor;
     of_cell.divergence             = hats.divergence.rowwise().sum();
+    // Numbers that may be kept.
+    constexpr std::size_t most = 40000000;
+    if (condensed->id < 0 && sums.size() * condensed->by_loads.size() * 3 < most)
+      of_cell.condensed = condensed;
     const CellConstants<dim> constants(corners);
     const auto              &weights = mesh.unit.inside.weights;
     const Eigen::VectorXd    rest    = in_cell.at.determinants.cwiseProduct(in_cell.source) -
@@ -396,8 +399,10 @@ namespace PeriDeal
           for (unsigned int f = 0; f < 2 * dim; ++f)
             out += of_cell.outward[f * mesh.unit.basis.n_of_face];
           left += std::abs(out);
-          of_cell.loads = mesh.condensed.of(corners_of<dim>(cell))
-                            .first->numbers(of_cell.outward, of_cell.loads, of_cell.divergence);
+          const auto condensed = of_cell.condensed ? of_cell.condensed :
+                                                     mesh.condensed.of(corners_of<dim>(cell)).first;
+          of_cell.loads = condensed->numbers(of_cell.outward, of_cell.loads, of_cell.divergence);
+          of_cell.condensed.reset();
         }
     left = Utilities::MPI::sum(left, mesh.dofs().get_communicator());
   }

@@ -179,8 +179,9 @@ namespace PeriDeal
     struct Sums
     {
       Eigen::VectorXd outward, loads, divergence; // in the end loads are the numbers of the flux
-      double          factor = 1.;
       Oscillation     oscillation;
+
+      std::shared_ptr<const CondensedCell> condensed; // of cells that are unlike others
     };
 
     void add(const Cell &cell);

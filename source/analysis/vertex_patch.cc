@@ -51,7 +51,7 @@ namespace PeriDeal
     }
 
 
-    bool is_same(const std::array<int, 6> &place, const unsigned int n_coordinates)
+    bool is_whole_face(const std::array<int, 6> &place, const unsigned int n_coordinates)
     {
       for (unsigned int a = 0; a < n_coordinates; ++a)
         if (place[a] != 0 || place[2 + 3 * a] != 2)
@@ -106,7 +106,7 @@ namespace PeriDeal
 
   const Eigen::MatrixXd *PatchSolver::transformation(const std::array<int, 6> &place)
   {
-    if (is_same(place, n_coordinates))
+    if (is_whole_face(place, n_coordinates))
       return nullptr;
     const auto [entry, is_new] = transformations.try_emplace(place);
     if (is_new)
