@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/types.h>
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "flux_basis.h"
+
+namespace PeriDeal
+{
+  /**
+   * Where a face of a cell lies on the face of the larger one of the two cells beside it, whose
+   * coordinates begin at its vertex with the lowest number and go first towards the lower one of
+   * the next two.
+   */
+  struct FacePlace
+  {
+    /** What the flux through it is, as seen from the cell. */
+    enum State
+    {
+      shared, // with the neighbour
+      given,
+      open // a value is given, and any flux may pass
+    };
+
+    int                                            state = given;
+    std::array<dealii::types::global_dof_index, 4> key{}; // vertices of the larger face, ascending
+    std::array<int, 2>                             origin{}; // in halves of it
+    std::array<int, 4> steps{}; // along each coordinate of the own face: 2 a + c, of both
+
+    /** Part of the larger face. */
+    double share(const unsigned int n_coordinates) const;
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int)
+    {
+      archive &state &key &origin &steps;
+    }
+  };
+
+
+  /** What a cell adds to the problem of a vertex. */
+  struct PatchCell
+  {
+    dealii::types::global_dof_index      vertex = 0;
+    unsigned int                         cell   = 0; // active cell index at its owner
+    unsigned int                         corner = 0; // of the cell, nearest to the vertex
+    unsigned int                         owner  = 0;
+    double                               factor = 1.; // of the stiffness of the condensed cell
+    double                               mean   = 0.; // what has to flow out, but for the factor
+    std::vector<FacePlace>               faces;
+    Eigen::VectorXd                      loads, given; // of the fluxes through faces
+    std::shared_ptr<const CondensedCell> condensed;
+  };
+
+
+  /**
+   * Fluxes through the faces of the cells around a vertex: those that make sum of factor (o
+   * stiffness o/2 - loads o) the smallest, where the fluxes through all faces that are not shared
+   * by two of the cells and are not open are given, others are continuous, and out of each cell
+   * flows its mean. Where no face of cells that share faces is open, all of their means are changed
+   * by one number so that they can be.
+   * Factorizations are kept, and serve all vertices around which all is alike.
+   */
+  class PatchSolver
+  {
+  public:
+    /** @param n_coordinates of a face; @param n_of_face fluxes through one; k of RT_k */
+    PatchSolver(const unsigned int n_coordinates, const unsigned int k);
+
+    /** o of each cell; cells are sorted. */
+    std::vector<Eigen::VectorXd> solve(std::vector<PatchCell> &cells);
+
+  private:
+    /** How the flux through a face of a cell follows from an unknown one. */
+    struct Part
+    {
+      unsigned int           cell, face, unknown;
+      double                 sign;
+      std::array<int, 6>     place;          // of its coordinates in those of the unknown
+      const Eigen::MatrixXd *transformation; // null: the same
+    };
+
+    using Key = std::vector<std::int64_t>;
+    using LU  = Eigen::PartialPivLU<Eigen::MatrixXd>;
+
+    std::vector<Part>      parts_of(const std::vector<PatchCell> &cells, unsigned int &n_unknown);
+    const Eigen::MatrixXd *transformation(const std::array<int, 6> &place);
+    Eigen::MatrixXd        matrix(const std::vector<PatchCell> &cells,
+                                  const std::vector<double>    &factors,
+                                  const std::vector<Part>      &parts,
+                                  const unsigned int            n_unknown,
+                                  const std::vector<int>       &groups) const;
+    std::shared_ptr<const LU> factorization(const std::vector<PatchCell> &cells,
+                                            const std::vector<double>    &factors,
+                                            const std::vector<Part>      &parts,
+                                            const unsigned int            n_unknown,
+                                            const std::vector<int>       &groups);
+
+    const unsigned int                            n_coordinates, k, n_of_face;
+    std::map<std::array<int, 6>, Eigen::MatrixXd> transformations;
+    std::map<Key, std::shared_ptr<const LU>>      known;
+    std::size_t                                   n_kept = 0; // numbers in the factorizations
+  };
+} // namespace PeriDeal
