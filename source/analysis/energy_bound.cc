@@ -132,11 +132,12 @@ namespace PeriDeal
   template <int dim>
   struct EnergyBounds<dim>::Parts
   {
-    Parts(const FEMOperator<dim> &op, const BodyParameters<dim> &body, const SolveSystem &solve)
+    Parts(const FieldOperator<dim> &op, const BodyParameters<dim> &body, const SolveSystem &solve)
       : op(op)
       , body(body)
       , solve(solve)
-      , layout(element_layout(op.dof_handler(), static_cast<const Coupling<dim> *>(nullptr)))
+      , layout(
+          element_layout(cells_of(op).dof_handler(), static_cast<const Coupling<dim> *>(nullptr)))
       , mesh(op, body)
     {}
 
@@ -164,7 +165,7 @@ namespace PeriDeal
     std::pair<double, double> product(const Balanced &primal, const Balanced &dual) const;
     double                    flow(const Balanced &primal, const std::string &side) const;
 
-    const FEMOperator<dim>                                          &op;
+    const FieldOperator<dim>                                        &op;
     const BodyParameters<dim>                                       &body;
     const SolveSystem                                                solve;
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
@@ -176,7 +177,7 @@ namespace PeriDeal
   double EnergyBounds<dim>::Parts::energy(const FluxProblem<dim> &problem, const Vector &u) const
   {
     double square = 0.;
-    for_each_owned(op.dof_handler(), [&](const auto &cell) {
+    for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
       const Eigen::VectorXd numbers = mesh.numbers(cell, u);
       const CellField<dim>  field(mesh.unit, corners_of<dim>(cell), problem, numbers);
       square += weighted_gradient(field, mesh.unit.inside.weights, field.gradient).squaredNorm();
@@ -192,7 +193,7 @@ namespace PeriDeal
                       transfer_coefficient(problem, side, at.points[q]) * values[q] * values[q];
         });
     });
-    return std::sqrt(Utilities::MPI::sum(square, op.dof_handler().get_communicator()));
+    return std::sqrt(Utilities::MPI::sum(square, cells_of(op).dof_handler().get_communicator()));
   }
 
 
@@ -200,15 +201,16 @@ namespace PeriDeal
   Vector EnergyBounds<dim>::Parts::residual(const FluxProblem<dim> &problem, const Vector &u) const
   {
     Vector                               r(layout);
-    std::vector<types::global_dof_index> indices(op.dof_handler().get_fe().n_dofs_per_cell());
-    for_each_owned(op.dof_handler(), [&](const auto &cell) {
+    std::vector<types::global_dof_index> indices(
+      cells_of(op).dof_handler().get_fe().n_dofs_per_cell());
+    for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
       const Eigen::VectorXd of_cell = cell_residual(mesh, problem, cell, u);
       cell->get_dof_indices(indices);
       for (unsigned int i = 0; i < indices.size(); ++i)
         r(indices[i]) += of_cell[i];
     });
     r.compress(VectorOperation::add);
-    op.hanging_nodes().condense(r);
+    cells_of(op).hanging_nodes().condense(r);
     Vector owned;
     op.initialize_vector(owned);
     owned.copy_locally_owned_data_from(r);
@@ -221,10 +223,10 @@ namespace PeriDeal
   double EnergyBounds<dim>::Parts::residual_at(const Balanced &solution, const Vector &v) const
   {
     double sum = 0.;
-    for_each_owned(op.dof_handler(), [&](const auto &cell) {
+    for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
       sum += cell_residual(mesh, solution.problem, cell, solution.u).dot(mesh.numbers(cell, v));
     });
-    return Utilities::MPI::sum(sum, op.dof_handler().get_communicator());
+    return Utilities::MPI::sum(sum, cells_of(op).dof_handler().get_communicator());
   }
 
 
@@ -234,13 +236,13 @@ namespace PeriDeal
   {
     const EquilibratedFlux<dim> &flux = *solution.flux;
     const ValueLifting<dim>      lifting(mesh, solution.problem);
-    const MPI_Comm               communicator = op.dof_handler().get_communicator();
+    const MPI_Comm               communicator = cells_of(op).dof_handler().get_communicator();
     EnergyBound                 &bound        = solution.bound;
-    bound.cells.assign(op.dof_handler().get_triangulation().n_active_cells(), 0.);
+    bound.cells.assign(cells_of(op).dof_handler().get_triangulation().n_active_cells(), 0.);
     // Of flux and oscillation, flux alone, sides, values, energy of a flux of 1 through all faces.
     std::array<double, 5> squares{}, all{};
     double                least_h = std::numeric_limits<double>::max();
-    for_each_owned(op.dof_handler(), [&](const auto &cell) {
+    for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
       const CellField<dim>  field            = flux.field(cell);
       const double          square           = flux.difference(cell, field).squaredNorm();
       const auto           &other            = flux.oscillation(cell);
@@ -275,7 +277,7 @@ namespace PeriDeal
     least_h = Utilities::MPI::min(least_h, communicator);
     // What is left flows off through faces in some way, nowhere more than all of it. Through a face
     // of several smaller ones it passes in shares, which these even out.
-    const bool   hanging = op.dof_handler().get_triangulation().has_hanging_nodes();
+    const bool   hanging = cells_of(op).dof_handler().get_triangulation().has_hanging_nodes();
     const double spread  = hanging ? 4. : 1.;
     bound.flux           = std::sqrt(all[1]);
     bound.oscillation    = std::sqrt(all[0] + all[2]) - bound.flux;
@@ -311,7 +313,7 @@ namespace PeriDeal
         Vector       x(r);
         x = 0.;
         solve(x, r);
-        op.hanging_nodes().interpolate(x);
+        cells_of(op).hanging_nodes().interpolate(x);
         const Vector added = with_ghosts(x, layout);
         // All values of it are 0.
         solution->correction += energy(solution->problem, added);
@@ -372,14 +374,19 @@ namespace PeriDeal
     Vector z, rhs, inner;
     op.initialize_vector(z);
     if (of_value)
-      mark_side(op.dof_handler(), *z.get_partitioner(), body, op.hanging_nodes(), side, z);
-    op.hanging_nodes().interpolate(z);
+      mark_side(cells_of(op).dof_handler(),
+                *z.get_partitioner(),
+                body,
+                cells_of(op).hanging_nodes(),
+                side,
+                z);
+    cells_of(op).hanging_nodes().interpolate(z);
     rhs   = residual(dual, with_ghosts(z, layout));
     inner = rhs;
     inner = 0.;
     solve(inner, rhs);
     z += inner;
-    op.hanging_nodes().interpolate(z);
+    cells_of(op).hanging_nodes().interpolate(z);
     return z;
   }
 
@@ -391,7 +398,7 @@ namespace PeriDeal
   {
     const ValueLifting<dim> lifting(mesh, solution.problem);
     double                  sum = 0.;
-    for_each_owned(op.dof_handler(), [&](const auto &cell) {
+    for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
       const Eigen::VectorXd lift = lifting.numbers(cell, solution.u);
       if (lift.size() == 0)
         return;
@@ -404,7 +411,7 @@ namespace PeriDeal
                .cwiseProduct(weighted_gradient(field, weights, lifting.gradient(lift)))
                .sum();
     });
-    return Utilities::MPI::sum(sum, op.dof_handler().get_communicator());
+    return Utilities::MPI::sum(sum, cells_of(op).dof_handler().get_communicator());
   }
 
 
@@ -420,7 +427,7 @@ namespace PeriDeal
       return {0., 0.};
     const double          s = std::sqrt(of_b / of_a);
     std::array<double, 3> sums{}, all{}; // of s e + e*/s, s e - e*/s; of sides
-    for_each_owned(op.dof_handler(), [&](const auto &cell) {
+    for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
       const CellField<dim>  field  = primal.flux->field(cell);
       const Eigen::MatrixXd first  = primal.flux->difference(cell, field);
       const Eigen::MatrixXd second = dual.flux->difference(cell, dual.flux->field(cell));
@@ -434,7 +441,7 @@ namespace PeriDeal
       sums[2] += 2. * (s * s * o.sides + o_dual.sides / (s * s));
     });
     for (unsigned int k = 0; k < sums.size(); ++k)
-      all[k] = Utilities::MPI::sum(sums[k], op.dof_handler().get_communicator());
+      all[k] = Utilities::MPI::sum(sums[k], cells_of(op).dof_handler().get_communicator());
     const double rest  = s * a.remainder + b.remainder / s;
     const auto   bound = [&](const double square) {
       return 0.25 * std::pow(std::sqrt(square + all[2]) + rest, 2);
@@ -455,7 +462,7 @@ namespace PeriDeal
     FluxProblem<dim> alone = primal.problem;
     alone.conditions       = conditions;
     double sum             = 0.;
-    for_each_owned(op.dof_handler(), [&](const auto &cell) {
+    for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
       for_each_open_side(
         mesh,
         primal.problem,
@@ -468,7 +475,7 @@ namespace PeriDeal
               rim * unit.weights[q] * at.area(q, f) * inflow(alone, id, at.points[q], values[q]);
         });
     });
-    return Utilities::MPI::sum(sum, op.dof_handler().get_communicator());
+    return Utilities::MPI::sum(sum, cells_of(op).dof_handler().get_communicator());
   }
 
 
@@ -491,7 +498,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  EnergyBounds<dim>::EnergyBounds(const FEMOperator<dim>    &op,
+  EnergyBounds<dim>::EnergyBounds(const FieldOperator<dim>  &op,
                                   const BodyParameters<dim> &body,
                                   const SolveSystem         &solve)
     : parts(std::make_unique<Parts>(op, body, solve))

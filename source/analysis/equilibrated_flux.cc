@@ -42,12 +42,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  FluxMesh<dim>::FluxMesh(const FEMOperator<dim> &op, const BodyParameters<dim> &body)
-    : unit(op.dof_handler().get_fe())
-    , rim(body.boundary_conditions.holes, op.dof_handler().get_triangulation())
+  FluxMesh<dim>::FluxMesh(const FieldOperator<dim> &op, const BodyParameters<dim> &body)
+    : unit(cells_of(op).dof_handler().get_fe())
+    , rim(body.boundary_conditions.holes, cells_of(op).dof_handler().get_triangulation())
     , condensed(unit)
     , op(op)
-    , linear(vertex_dofs(op.dof_handler().get_triangulation()))
+    , linear(vertex_dofs(cells_of(op).dof_handler().get_triangulation()))
     , hanging(*linear, *element_layout(*linear, static_cast<const Coupling<dim> *>(nullptr)))
   {
     types::global_dof_index begin = 0;

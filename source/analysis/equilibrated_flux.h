@@ -6,7 +6,7 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <perideal/base/types.h>
-#include <perideal/operators/diffusion/fem_operator.h>
+#include <perideal/operators/diffusion/cell_term.h>
 
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/vector.hpp>
@@ -33,11 +33,11 @@ namespace PeriDeal
     using HatsInCell = std::vector<std::pair<dealii::types::global_dof_index, Hat>>;
 
     /** op must outlive this. Collective. */
-    FluxMesh(const FEMOperator<dim> &op, const BodyParameters<dim> &body);
+    FluxMesh(const FieldOperator<dim> &op, const BodyParameters<dim> &body);
 
     const dealii::DoFHandler<dim> &dofs() const
     {
-      return op.dof_handler();
+      return cells_of(op).dof_handler();
     }
 
     HatsInCell hats(const Cell &cell) const;
@@ -61,7 +61,7 @@ namespace PeriDeal
       return {&linear->get_triangulation(), cell->level(), cell->index(), linear.get()};
     }
 
-    const FEMOperator<dim>                        &op;
+    const FieldOperator<dim>                      &op;
     const std::unique_ptr<dealii::DoFHandler<dim>> linear;
     const HangingNodes<dim>                        hanging;
     std::vector<dealii::types::global_dof_index>   begins; // vertices of each process

@@ -38,7 +38,7 @@ namespace PeriDeal
         : problem(settings, ModelKind::finite_elements, communicator)
         , u(problem.vector())
         , solver(problem.op(), 1e-12, 4000)
-        , bounds(*problem.fem, problem.scene, [this](Vector &x, const Vector &b) {
+        , bounds(problem.op(), problem.scene, [this](Vector &x, const Vector &b) {
           solver.solve(0., 1., x, b);
         })
       {
@@ -350,8 +350,9 @@ namespace PeriDeal
     {
       const Bounded<dim> solved(test.settings + more);
       const std::clock_t start = std::clock();
-      FEMOperator<dim>   op(solved.problem.handler, solved.problem.scene);
-      Vector             u = solved.problem.vector();
+      const auto field       = field_of_elements<dim>(solved.problem.handler, solved.problem.scene);
+      FieldOperator<dim> &op = *field;
+      Vector              u  = solved.problem.vector();
       solve_steady(op, u, 0., 1e-10, 4000);
       const double       of_solution = processor_seconds(start);
       const std::clock_t again       = std::clock();

@@ -67,7 +67,7 @@ namespace PeriDeal
      *
      * Collective.
      */
-    EnergyBounds(const FEMOperator<dim>    &op,
+    EnergyBounds(const FieldOperator<dim>  &op,
                  const BodyParameters<dim> &body,
                  const SolveSystem         &solve);
 
