@@ -447,15 +447,6 @@ namespace PeriDeal
     accuracy.refuse(accuracy.measure == AccuracyMeasure::probes && scene.output.probes.empty(),
                     "Measure",
                     "is 'probes', but 'Probes' in section 'Output' has no point.");
-    accuracy.refuse(
-      accuracy.measures_growth() && !(deforms && scene.material.breaks() && dim > 1),
-      "Measure",
-      "is '" + accuracy.measure_text() + "', but " +
-        (!deforms ?
-           "'Physics' is not elasticity." :
-         !scene.material.breaks() ?
-           "nothing breaks: give 'Fracture energy' or 'Critical stretch' in section 'Material'." :
-           "bars have no such thing."));
     accuracy.refuse(accuracy.measure == AccuracyMeasure::flow && deforms,
                     "Measure",
                     "is 'flow', but nothing flows in an elastic body; 'field', 'probes' and "
@@ -472,22 +463,6 @@ namespace PeriDeal
 
   namespace
   {
-    /** The same where cracks that grow are measured. */
-    template <int dim>
-    std::string obstacle_to_growth(const Scene<dim> &scene)
-    {
-      if (!scene.domain.has_lattice())
-        return "bonds that break in a body that is no lattice ('Shape' and 'Rims' in section 'Domain')";
-      if (scene.material.law.kind != SolidLaw::linear)
-        return "another 'Law' than 'linear' (section 'Material')";
-      if (scene.elasticity.computes_temperature)
-        return "a computed temperature ('Temperature change' in section 'Elasticity')";
-      if (scene.cracks.change())
-        return "prescribed cracks that grow beside bonds that break ('Growth' in section 'Cracks')";
-      return "";
-    }
-
-
     /** What is not yet chosen for, in words, or nothing. */
     template <int dim>
     std::string obstacle_to_choice(const Scene<dim> &scene)
@@ -496,8 +471,6 @@ namespace PeriDeal
       const bool is_box = scene.domain.shape == Shape::box;
       if (scene.domain.is_image())
         return "images ('Shape' in section 'Domain')";
-      if (scene.accuracy.measures_growth())
-        return obstacle_to_growth(scene);
       if (!is_box && scene.peridynamics.horizon > 0.)
         return "a horizon that is a length in bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
       if (!is_box && scene.cracks.change())
@@ -514,7 +487,7 @@ namespace PeriDeal
       if (scene.elasticity.computes_temperature)
         return "a computed temperature ('Temperature change' in section 'Elasticity')";
       if (scene.material.breaks())
-        return "bonds that break ('Fracture energy', 'Critical stretch' in section 'Material') unless 'Measure' in section 'Accuracy' is 'strength' or 'path'";
+        return "bonds that break ('Fracture energy', 'Critical stretch' in section 'Material')";
       if (scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
         return "'Transmission' of cracks, a share of bonds of one horizon, another crack on each lattice: give 'Contact conductance'";
       return "";

@@ -5,8 +5,6 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
-#include <perideal/scene/lists.h>
-#include <perideal/scene/rules.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,11 +44,6 @@ namespace PeriDeal
       longest = std::max(longest, box.upper[d] - box.lower[d]);
     const bool cracked = !scene.cracks.cracks.empty();
     family             = family_for(body, limit, cracked && !body.given && on_faces(1.));
-    if (family == Family::growing)
-      {
-        follows = can_follow();
-        return;
-      }
     if (!is_given() && family != Family::bonds)
       planes = material_planes(scene);
     for (unsigned int d = 0; planes && d < dim; ++d)
@@ -78,8 +71,6 @@ namespace PeriDeal
                                                            const bool               on_faces)
   {
     const Scene<dim> &scene = *body.scene;
-    if (scene.accuracy.measures_growth())
-      return Family::growing;
     if (limit == LimitOfAttempts::nonlocal)
       return Family::bonds;
     const bool whole = scene.cracks.cracks.empty() || dim == 1;
@@ -144,7 +135,7 @@ namespace PeriDeal
   CellCounts Attempts<dim>::counts(const double fineness) const
   {
     // All edges get finer, or nothing is seen of what varies along one.
-    const bool   grows = family != Family::bonds && family != Family::growing;
+    const bool   grows = family != Family::bonds;
     const double ratio = grows && first_fineness > 0. ? fineness / first_fineness : 1.;
     CellCounts   cells;
     for (unsigned int d = 0; d < dim; ++d)
@@ -152,42 +143,10 @@ namespace PeriDeal
         const double n = std::max(fineness * (box.upper[d] - box.lower[d]) / longest,
                                   (first.empty() ? 2. : first[d]) * std::max(1., ratio));
         cells.push_back(std::max<unsigned int>(2, std::lround(n)));
-        if (family == Family::growing)
-          cells.back() = with_cracks_between_rows(d, cells.back());
-        else if (family != Family::faces && family != Family::bonds)
+        if (family != Family::faces && family != Family::bonds)
           cells.back() = with_points_on_planes(d, cells.back());
       }
     return cells;
-  }
-
-
-  template <int dim>
-  unsigned int Attempts<dim>::with_cracks_between_rows(const unsigned int direction,
-                                                       const unsigned int n) const
-  {
-    constexpr unsigned int choices = 4;
-    const double           lower = box.lower[direction], edge = box.upper[direction] - lower;
-    unsigned int           best     = n;
-    double                 farthest = 1.;
-    for (unsigned int k = n; k < n + choices; ++k)
-      {
-        double from_middle = 0.; // between two rows of vertices, in cells
-        for (const auto &crack : box.cracks)
-          {
-            const double s     = (crack[0][direction] - lower) / edge;
-            const bool   along = std::all_of(crack.begin(), crack.end(), [&](const auto &corner) {
-              return std::abs((corner[direction] - lower) / edge - s) < 1e-9;
-            });
-            if (along)
-              from_middle = std::max(from_middle, std::abs(s * k - std::floor(s * k) - 0.5));
-          }
-        if (from_middle < farthest - 1e-9)
-          {
-            farthest = from_middle;
-            best     = k;
-          }
-      }
-    return best;
   }
 
 
@@ -355,81 +314,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool Attempts<dim>::can_follow() const
-  {
-    if (!scene.elasticity.is_static())
-      return false;
-    try
-      {
-        Attempt attempt;
-        set_growth(coarsest(), attempt);
-        const auto variant = scene_variant(scene, attempt.settings);
-        refuse_deformation(*variant);
-        return true;
-      }
-    catch (const UserError &)
-      {
-        return false;
-      }
-  }
-
-
-  template <int dim>
-  double Attempts<dim>::smallest_part() const
-  {
-    double smallest = longest;
-    for (unsigned int d = 0; d < dim; ++d)
-      smallest = std::min(smallest, box.upper[d] - box.lower[d]);
-    for (const auto &crack : box.cracks)
-      {
-        double square = 0.;
-        for (unsigned int d = 0; d < dim; ++d)
-          square += std::pow(crack[1][d] - crack[0][d], 2);
-        smallest = std::min(smallest, std::sqrt(square));
-      }
-    return smallest;
-  }
-
-
-  template <int dim>
-  void Attempts<dim>::set_growth(const double fineness, Attempt &attempt) const
-  {
-    constexpr double share_of_step = 0.25; // of the tolerance
-    const auto       set           = [&](const std::string &entry, const std::string &text) {
-      attempt.settings.emplace_back(entry, text);
-    };
-    const CellCounts cells = counts(fineness);
-    attempt.fineness       = fineness_of(cells);
-    set("Domain/Node spacing", "");
-    set("Domain/Cells", to_text(cells));
-    if (!(scene.peridynamics.horizon > 0.))
-      set("Peridynamics/Horizon ratio", "4");
-    if (follows)
-      {
-        attempt.model = ModelKind::coupled;
-        set("Domain/Nodes", "vertices");
-        set("Coupling/Zone", "follow");
-        set("Coupling/Scheme", "exchange");
-        set("Coupling/Overlap", "0");
-      }
-    else
-      attempt.model = ModelKind::peridynamics;
-    if (scene.elasticity.is_static())
-      set("Time/Time step",
-          number_text(share_of_step * scene.accuracy.tolerance * scene.time.end_time));
-    set("Models", to_string(attempt.model));
-  }
-
-
-  template <int dim>
   Attempt Attempts<dim>::at(const double fineness) const
   {
-    Attempt attempt;
-    if (family == Family::growing)
-      {
-        set_growth(fineness, attempt);
-        return attempt;
-      }
+    Attempt    attempt;
     const auto set = [&](const std::string &entry, const std::string &text) {
       attempt.settings.emplace_back(entry, text);
     };
@@ -521,8 +408,6 @@ namespace PeriDeal
   {
     if (needs.jumps || (needs.disagree && family != Family::given))
       return 1.;
-    if (family == Family::growing)
-      return 1.; // of the horizon
     if (probes_at_ends())
       return family == Family::faces && dim < 3 ? 1.5 : 1.;
     switch (family)
@@ -548,8 +433,7 @@ namespace PeriDeal
   {
     // Where a crack's ends lie in their cells changes the error by factors of two, so that two
     // differences do not show an order.
-    return family == Family::pairs || family == Family::given_pairs || family == Family::zone ||
-               family == Family::growing ?
+    return family == Family::pairs || family == Family::given_pairs || family == Family::zone ?
              best_order() :
              1.;
   }
@@ -558,8 +442,7 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::first_ratio() const
   {
-    return family == Family::bonds || family == Family::whole || family == Family::growing ? 1.5 :
-                                                                                             2.;
+    return family == Family::bonds || family == Family::whole ? 1.5 : 2.;
   }
 
 
@@ -574,8 +457,6 @@ namespace PeriDeal
           return 2. * (dim - 1);
         case Family::bonds:
           return 2. * dim;
-        case Family::growing:
-          return dim + 1.;
         default:
           return dim;
       }
@@ -594,11 +475,6 @@ namespace PeriDeal
         case Family::faces:
           return "The cracks run along the axes: quadratic finite elements with the cracks on faces "
                  "of cells, fine at their ends.";
-        case Family::growing:
-          return follows ?
-                   "Bonds break: they are where the body is about to break, finite elements "
-                   "elsewhere, on ever finer lattices." :
-                   "Bonds break: peridynamics on ever finer lattices.";
         case Family::given:
           return std::string("The body is no box: quadratic finite elements on ") +
                  (body.settings.empty() ? "its mesh, whose cells are halved" :
@@ -666,14 +542,6 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::coarsest() const
   {
-    if (family == Family::growing)
-      {
-        constexpr double parts = 16.,
-                         most  = dim == 3 ? 40. : 200.; // four horizons of four spacings
-        return scene.peridynamics.horizon > 0. ?
-                 3. * longest / scene.peridynamics.horizon :
-                 std::clamp(parts * longest / smallest_part(), 20., most);
-      }
     if (family == Family::bonds)
       return 2. * longest / scene.peridynamics.horizon;
     if (family == Family::whole)

@@ -52,10 +52,6 @@ namespace PeriDeal
    * ends of cracks on faces; with cracks across cells, in diffusion, linear ones with pairs of nodes.
    *
    * For the nonlocal one of a horizon that is a length: peridynamics, with ever more nodes in it.
-   *
-   * Where bonds break: on ever finer lattices, with a horizon in proportion unless it is a length,
-   * bonds where the body is about to break and elements elsewhere; in motion, and where these cannot
-   * be had, peridynamics.
    */
   template <int dim>
   class Attempts
@@ -95,7 +91,6 @@ namespace PeriDeal
       pairs,
       zone,
       bonds,
-      growing,    // bonds break
       given,      // a mesh without cracks across its cells
       given_pairs // with such cracks
     };
@@ -120,16 +115,9 @@ namespace PeriDeal
      */
     bool probes_at_ends() const;
 
-    /** Where bonds break: whether elements can be had beside them. */
-    bool   can_follow() const;
-    double smallest_part() const; // of the body and its cracks: a length
-    void   set_growth(const double fineness, Attempt &attempt) const;
-
     std::vector<double> first_counts() const;
     CellCounts          counts(const double fineness) const;
     bool                planes_on_lines(const unsigned int direction, const unsigned int n) const;
-    /** So that cracks along the rows lie between two of them on all lattices alike. */
-    unsigned int with_cracks_between_rows(const unsigned int direction, const unsigned int n) const;
     unsigned int with_points_on_planes(const unsigned int direction, const unsigned int n) const;
     void         set_mesh(const double fineness, Attempt &attempt) const;
     std::optional<CellCounts> on_faces(const double fineness) const;
@@ -142,8 +130,7 @@ namespace PeriDeal
     NeedsOfFormulas          needs;
     std::optional<std::vector<std::vector<double>>> planes; // of materials, to be on lines
     Family                                          family = Family::whole;
-    bool                follows = true; // elements stand beside bonds that break
-    std::vector<double> first;          // cells of the first mesh, of a family other than `bonds`
+    std::vector<double> first; // cells of the first mesh, of a family other than `bonds`
     double              first_fineness = 0.; // of the coarsest mesh; 0 until it is known
     double faces_unit = 0.; // fineness of the coarsest mesh that has the cracks on faces
   };

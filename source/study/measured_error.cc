@@ -5,12 +5,10 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <perideal/analysis/crack_surface.h>
 #include <perideal/analysis/point_evaluator.h>
 #include <perideal/base/gathered_lists.h>
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
-#include <perideal/problems/solid_problem.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/study/naming.h>
@@ -299,50 +297,6 @@ namespace PeriDeal
   }
 
 
-  namespace
-  {
-    /** Points in the middle between the nodes that a crack has parted. Collective. */
-    template <int dim>
-    std::vector<std::array<double, 3>> path_of(const Problem<dim> &problem)
-    {
-      constexpr double                   parted = 0.3; // of a node's family; beside a plane 0.4
-      std::vector<std::array<double, 3>> points;
-      const auto *const                  solid = dynamic_cast<const SolidProblem<dim> *>(&problem);
-      if (solid == nullptr || solid->body.families() == nullptr)
-        return points;
-      if constexpr (dim > 1)
-        for (const CrackFacet<dim> &facet : CrackSurface<dim>(*solid->body.families())
-                                              .facets(solid->body.breaks(), solid->body.damage()))
-          if (facet.damage > parted)
-            {
-              points.push_back({{0., 0., 0.}});
-              for (unsigned int d = 0; d < dim; ++d)
-                points.back()[d] = 0.5 * (facet.lower[d] + facet.upper[d]);
-            }
-      return points;
-    }
-
-
-    /** The farthest distance of a point of either path to the other. */
-    double distance_of(const std::vector<std::array<double, 3>> &one,
-                       const std::vector<std::array<double, 3>> &other)
-    {
-      double farthest = 0.;
-      for (const auto &[from, to] : {std::pair(&one, &other), std::pair(&other, &one)})
-        for (const auto &p : *from)
-          {
-            double nearest = std::numeric_limits<double>::max();
-            for (const auto &q : *to)
-              nearest = std::min(nearest,
-                                 std::pow(p[0] - q[0], 2) + std::pow(p[1] - q[1], 2) +
-                                   std::pow(p[2] - q[2], 2));
-            farthest = std::max(farthest, nearest);
-          }
-      return std::sqrt(farthest);
-    }
-  } // namespace
-
-
   template <int dim>
   MeasuredNumbers MeasuredError<dim>::numbers(Simulation<dim> &simulation) const
   {
@@ -364,16 +318,6 @@ namespace PeriDeal
         numbers.values[side] = flows[side].template get<double>();
         numbers.least = small * std::max(scale_of(all), size_by_range(scene, simulation.problem()));
       }
-    else if (measure == AccuracyMeasure::strength)
-      {
-        const Json all = simulation.found()["models"]["auto"];
-        scene.accuracy.refuse(!all.contains("largest force"),
-                              "Measure",
-                              "is 'strength', but no side that is held or loaded bears a force.");
-        numbers.values["strength"] = std::abs(all["largest force"]["value"].template get<double>());
-      }
-    else if (measure == AccuracyMeasure::path)
-      numbers.path = path_of(simulation.problem());
     else if (measure == AccuracyMeasure::stress_intensity)
       {
         const Json all = simulation.found()["models"]["auto"];
@@ -493,17 +437,7 @@ namespace PeriDeal
   std::optional<double> MeasuredError<dim>::difference(const MeasuredSolution<dim> &fine,
                                                        const MeasuredSolution<dim> &coarse) const
   {
-    if (scene.accuracy.measure == AccuracyMeasure::path)
-      {
-        if (fine.numbers.path.empty() || coarse.numbers.path.empty())
-          return {}; // nothing has grown
-        double longest = 0.;
-        for (unsigned int d = 0; d < dim; ++d)
-          longest = std::max(longest, scene.domain.upper[d] - scene.domain.lower[d]);
-        return distance_of(fine.numbers.path, coarse.numbers.path) / longest;
-      }
-    if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow &&
-        !scene.accuracy.measures_growth())
+    if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow)
       return difference_of(fine.seen, coarse.seen, scene.accuracy.measure);
     switch (scene.accuracy.measure)
       {

@@ -6,7 +6,6 @@
 #include <perideal/scene/control.h>
 #include <perideal/simulation/simulation.h>
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,12 +13,11 @@
 
 namespace PeriDeal
 {
-  /** A flow, a strength, or the size of each stress intensity, by name; or a crack. */
+  /** A flow, or the size of each stress intensity, by name. */
   struct MeasuredNumbers
   {
     std::map<std::string, double> values;
     double least = 0.; // differences of smaller ones are relative to this: they may be zero
-    std::vector<std::array<double, 3>> path; // points of the crack that has grown
   };
 
 

@@ -69,7 +69,7 @@ namespace PeriDeal
         , measure(scene)
         , classical(body, text, communicator, measure, LimitOfAttempts::classical)
         , nonlocal(body, text, communicator, measure, LimitOfAttempts::nonlocal)
-        , is_nonlocal(scene.peridynamics.horizon > 0. && !scene.accuracy.measures_growth())
+        , is_nonlocal(scene.peridynamics.horizon > 0.)
         , moves(scene.deforms && !scene.elasticity.is_static()) // with steps as long as cells allow
         , start(Clock::now())
       {}
@@ -93,8 +93,6 @@ namespace PeriDeal
         constexpr double share_of_elements = 0.3;
         const double     tolerance         = scene.accuracy.tolerance;
         progress.line(scene.general.title + "  (" + text.file_name + ")");
-        if (scene.accuracy.measures_growth())
-          return search_growth();
         if (!scene.time.steady && !moves)
           choose_time_tolerance();
         // What steps in time leave may be too much; the mesh need not be made for nothing then.
@@ -105,46 +103,6 @@ namespace PeriDeal
         limit.clear();
         chosen = &nonlocal;
         refine(nonlocal, in_space);
-      }
-
-      /**
-       * Finer lattices first, whose horizon is in proportion; then more nodes in the same horizon,
-       * which hold a crack back the less. A horizon that is a length has more nodes on finer lattices.
-       */
-      void search_growth()
-      {
-        constexpr unsigned int first = 4, most = 8, more = 2;
-        constexpr double       most_times = 5.; // what more nodes in the horizon take
-        const double           tolerance  = scene.accuracy.tolerance;
-        refine(classical, tolerance);
-        if (scene.peridynamics.horizon > 0.)
-          return;
-        for (unsigned int m = first; m < most && limit.empty(); m += more)
-          {
-            limit = limit_of(most_times * classical.last().wall_time, 0.);
-            if (!limit.empty())
-              return;
-            Tried<dim> richer = classical.solve(with_horizon(classical.last().attempt, m + more));
-            const auto difference =
-              measure.difference(richer.solution(), classical.last().solution());
-            if (!difference)
-              return;
-            trapping = *difference;
-            progress.line("  with " + std::to_string(m + more) +
-                          " spacings in the horizon in place of " + std::to_string(m) + ": " +
-                          rounded_text(100. * trapping) + " % away");
-            if (is_met())
-              return;
-            classical.set({{"Peridynamics/Horizon ratio", std::to_string(m + more)}});
-            classical.begin_with(std::move(richer));
-            go_on(classical, tolerance);
-          }
-      }
-
-      static Attempt with_horizon(Attempt attempt, const unsigned int m)
-      {
-        attempt.settings.emplace_back("Peridynamics/Horizon ratio", std::to_string(m));
-        return attempt;
       }
 
       void write(std::unique_ptr<RunFiles> files)
@@ -187,7 +145,7 @@ namespace PeriDeal
         const double space = chosen->error().error;
         if (space < 0.)
           return space;
-        return time_error + trapping + space +
+        return time_error + space +
                (is_nonlocal && chosen == &classical ? horizon_effect + nonlocal.error().error : 0.);
       }
 
@@ -195,7 +153,7 @@ namespace PeriDeal
       {
         const double tolerance = scene.accuracy.tolerance;
         return ((chosen == &classical && is_nonlocal) ||
-                chosen->is_within(tolerance - time_error - trapping)) &&
+                chosen->is_within(tolerance - time_error)) &&
                estimate() <= tolerance;
       }
 
@@ -205,11 +163,6 @@ namespace PeriDeal
         progress.line("Models = auto: " + family.attempts().reason());
         compute(family, family.first());
         measure.refuse_forces_at_points(*family.last().simulation);
-        go_on(family, tolerance);
-      }
-
-      void go_on(Search<dim> &family, const double tolerance)
-      {
         for (;;)
           {
             next = family.next(tolerance);
@@ -411,7 +364,6 @@ namespace PeriDeal
         const double space   = chosen->error().error;
         return {{"mesh", cracked ? 0. : space},
                 {"crack", cracked ? space : 0.},
-                {"trapping", trapping},
                 {"horizon", chosen == &classical && is_nonlocal ? horizon_effect : 0.},
                 {"zone", 0.},
                 {"time", time_error},
@@ -455,8 +407,7 @@ namespace PeriDeal
       const bool                is_nonlocal, moves;
       const Clock::time_point   start;
       double                    time_error = 0., horizon_effect = 0.;
-      double                    trapping = 0.; // by the lattice, of cracks that grow
-      Json                      history  = Json::array();
+      Json                      history = Json::array();
       Attempt                   next;
       std::vector<unsigned int> constant; // directions
       std::string               limit;    // that ended the search, in words
@@ -489,7 +440,7 @@ namespace PeriDeal
   {
     const Progress progress(communicator, quiet);
     refuse_choice(scene);
-    const bool is_nonlocal = scene.peridynamics.horizon > 0. && !scene.accuracy.measures_growth();
+    const bool               is_nonlocal = scene.peridynamics.horizon > 0.;
     const BodyOfChoice<dim>  body(scene, communicator);
     const Attempts<dim>      attempts(body,
                                  is_nonlocal ? LimitOfAttempts::nonlocal :

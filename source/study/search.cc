@@ -90,7 +90,7 @@ namespace PeriDeal
     one.scene->general.automatic = true;
     one.simulation = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
     one.simulation->solve([&](const double) {
-      if (!scene.time.steady && !scene.accuracy.measures_growth())
+      if (!scene.time.steady)
         one.seen.push_back(measure.see(one.simulation->problem(), one.scene->cracks));
     });
     one.numbers = measure.numbers(*one.simulation);
@@ -116,16 +116,6 @@ namespace PeriDeal
     last_memory = Utilities::MPI::sum(std::max(1e6, resident_memory() - before), communicator);
     steps.push_back({attempt.fineness, difference ? *difference : 0.});
     now = observed_error(steps, family.lowest_order(), family.best_order());
-  }
-
-
-  template <int dim>
-  void Search<dim>::begin_with(Tried<dim> &&one)
-  {
-    latest = std::move(one);
-    steps  = {{latest.attempt.fineness, 0.}};
-    n      = 1;
-    now    = observed_error(steps, family.lowest_order(), family.best_order());
   }
 
 

@@ -65,9 +65,6 @@ namespace PeriDeal
     /** Solve, and compare with the last one, of which only its numbers are kept. */
     void compute(const Attempt &attempt);
 
-    /** Forget all solutions but this one, which is the first of other settings. */
-    void begin_with(Tried<dim> &&one);
-
     /** Whether cubic elements would tell the error after two solutions. */
     bool asks_richer() const;
 
