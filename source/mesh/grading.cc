@@ -93,7 +93,7 @@ namespace PeriDeal
 
   namespace
   {
-    /** A mesh that is no lattice has no horizon unless it is given, and needs none without bonds. */
+    /** A mesh that is no lattice has a horizon only if it is given; without bonds it needs none. */
     template <int dim>
     double horizon_of_zone(const Scene<dim> &scene)
     {

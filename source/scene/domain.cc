@@ -77,22 +77,6 @@ namespace PeriDeal
       "Number of cells of the box, one number per direction.";
     declare("Node spacing", EntryType::text, "", "length") =
       "Edge length of the cells, instead of Cells. It must divide every edge of the box.";
-    declare(coarsening.times, "Coarsening", "0") =
-      "How often cells may be merged, two in each direction, away from where they have to stay as fine as `Cells` says: a graded mesh "
-      "with hanging nodes. `Cells` must allow as many halvings; of a mesh that is no lattice `Refinements` must. Only for a box and for such meshes, and not for peridynamics alone.";
-    declare("Fine where", EntryType::text, "auto") =
-      "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0, and in the zone of section `Coupling` if "
-      "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. `crack ends`: at the ends of cracks, in three dimensions their "
-      "edges, and in that zone likewise. `corners`: besides, at corners of the body that a mesh has, where its sides open to more than 200 degrees inside, and where on a smooth side given values end. "
-      "Beyond, there are at least two cells of each size.";
-    declare(coarsening.refinements, "Refinements", "0") =
-      "How often the cells of a mesh file, of a generator or of a plate with fitted rims are halved in each direction. Round sides of the latter two stay round.";
-    declare(holes.rims, "Rims", "stairs", {"stairs", "fitted"}) =
-      "Of holes in a box or a plate: `stairs` removes cells of the lattice; `fitted` lets the mesh follow their rims, a row of cells around each hole and `Refinements` halving them all. A mesh that is no lattice needs a `Horizon` that is a length for bonds.";
-    declare(files.generator, "Generator", "") =
-      "With `Shape = generator`: the name of one of deal.II's `GridGenerator`, such as hyper_shell, plate_with_a_hole, hyper_L. Sides have the numbers that it gives them.";
-    declare(files.arguments, "Generator arguments", "") =
-      "Its arguments as deal.II's `generate_from_name_and_arguments` reads them: separated by `:`, coordinates of a point by `,`.";
     declare("Nodes", EntryType::choice, "auto", "", {"vertices", "cell centers", "auto"}) =
       "Where the peridynamic nodes sit: `auto` is cell centers with `Shape = image`, else vertices. Finite elements use the vertices "
       "in any case.";
@@ -107,9 +91,7 @@ namespace PeriDeal
     declare(holes.shape, "Hole shape", "circle", {"circle", "square"}) = "Shape of the hole.";
     declare(holes.angle, "Hole angle", "0", "degrees") =
       "A square hole is turned by this angle, counterclockwise.";
-    declare(files.mesh, "Mesh file", "") =
-      "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory or else to the "
-      "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.";
+    declare_mesh();
     declare("Image", EntryType::text) =
       "With `Shape = image`: a PNG, PGM or PPM file, relative to the working directory or else to the folder of the scene file. "
       "Its top row is the largest y.";
@@ -135,6 +117,31 @@ namespace PeriDeal
     declare("Extra layers phase", EntryType::text) =
       "With `Shape = image`: the phase of the extra layers. Empty: that of the nearest cell of the image.";
     parse();
+  }
+
+
+  template <int dim>
+  void Domain<dim>::declare_mesh()
+  {
+    declare(coarsening.times, "Coarsening", "0") =
+      "How often cells may be merged, two in each direction, away from where they have to stay as fine as `Cells` says: a graded mesh "
+      "with hanging nodes. `Cells` must allow as many halvings; of a mesh that is no lattice `Refinements` must. Only for a box and for such meshes, and not for peridynamics alone.";
+    declare("Fine where", EntryType::text, "auto") =
+      "With `Coarsening`: cells stay fine where this formula of x, y, z is greater than 0, and in the zone of section `Coupling` if "
+      "the model `coupled` runs. `auto`: in that zone, thus around cracks, for all models. `crack ends`: at the ends of cracks, in three dimensions their "
+      "edges, and in that zone likewise. `corners`: besides, at corners of the body that a mesh has, where its sides open to more than 200 degrees inside, and where on a smooth side given values end. "
+      "Beyond, there are at least two cells of each size.";
+    declare(coarsening.refinements, "Refinements", "0") =
+      "How often the cells of a mesh file, of a generator or of a plate with fitted rims are halved in each direction. Round sides of the latter two stay round.";
+    declare(holes.rims, "Rims", "stairs", {"stairs", "fitted"}) =
+      "Of holes in a box or a plate: `stairs` removes cells of the lattice; `fitted` lets the mesh follow their rims, a row of cells around each hole and `Refinements` halving them all. A mesh that is no lattice needs a `Horizon` that is a length for bonds.";
+    declare(files.generator, "Generator", "") =
+      "With `Shape = generator`: the name of one of deal.II's `GridGenerator`, such as hyper_shell, plate_with_a_hole, hyper_L. Sides have the numbers that it gives them.";
+    declare(files.arguments, "Generator arguments", "") =
+      "Its arguments as deal.II's `generate_from_name_and_arguments` reads them: separated by `:`, coordinates of a point by `,`.";
+    declare(files.mesh, "Mesh file", "") =
+      "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory or else to the "
+      "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.";
   }
 
 

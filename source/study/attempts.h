@@ -49,7 +49,8 @@ namespace PeriDeal
    *
    * A body that is no box has the mesh that it is given with, or one that follows the rims of its
    * holes, whose cells are halved: quadratic elements, graded to the corners of the body and the
-   * ends of cracks on faces; with cracks across cells, in diffusion, linear ones with pairs of nodes.
+   * ends of cracks on faces; with cracks across cells, in diffusion, linear ones with pairs of
+   * nodes.
    *
    * For the nonlocal one of a horizon that is a length: peridynamics, with ever more nodes in it.
    */

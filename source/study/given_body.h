@@ -34,8 +34,8 @@ namespace PeriDeal
 
     /**
      * How many cells along the longest edge of the box a function on a side needs: the fewest, of
-     * the coarse ones or halves of these, on which its linear interpolant along edges of their faces
-     * is right to a fifth of its variation. Not collective.
+     * the coarse ones or halves of these, on which its linear interpolant along edges of faces is
+     * right to a fifth of its variation. Not collective.
      */
     double fineness_on_side(
       const dealii::types::boundary_id                         side,

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Elastic bodies at rest: prm/elasticity against closed forms, prm/papers/le_2014 against finite elements that follow the hole.
 
-    elasticity.py bars | surface | cells | constraint | plates | bore | crack | thermal | laws | torsion | notes | le_elements | le_hole | le_full
+    elasticity.py bars | surface | cells | fitted | constraint | plates | bore | crack | thermal | laws | torsion | notes | le_elements | le_hole | le_full
 
 Bounds that follow from no theory are about 1.5 times the gap that was measured; the comment beside them gives it.
 """
@@ -343,6 +343,22 @@ def constraint():
         check_message(run, "Displacement layer", *words)
 
 
+def fitted():
+    """Rims of holes that a mesh follows: the stress above a round one, 3.14 in a strip five times as wide (Howland), and corners."""
+    table = Comparison("Plate with fitted holes")
+    runs = [run_quietly("fitted_holes.prm", {"Domain/Refinements": str(n), "Domain/Coarsening": str(n - 3 if n > 5 else n - 2)}) for n in (4, 7)]
+    top = [run.rows(FE)[0] for run in runs]
+    table.add("stress above the round hole", top[1]["sxx"], 3.14, relative=0.03)
+    table.add("the same on cells twice as large", top[0]["sxx"], top[1]["sxx"], relative=0.03)
+    table.add("displacement of the pulled side, of both", runs[0].rows(FE)[2]["ux"], runs[1].rows(FE)[2]["ux"], relative=2e-4)
+    balanced(table, runs[1])
+    shared = run_quietly("fitted_holes.prm", {"Domain/Refinements": "4", "Domain/Coarsening": "2"}, ranks=4)
+    table.add("4 processes", shared.rows(FE)[2]["ux"], runs[0].rows(FE)[2]["ux"], relative=1e-9)
+    table.show()
+    near = run_scene("prm/elasticity/fitted_holes.prm", {"Domain/Holes": "circle: 1.2, 0.3, 0.25"}, expect_error=True)
+    check_message(near, "'Rims' in section 'Domain'", "circle: 1.2, 0.3, 0.25", "a side of the plate")
+
+
 def notes():
     """What a run says of bonds alone, and what it refuses."""
     bonds = {"Models": PD, "Elasticity/Model": "bond-based"}
@@ -418,4 +434,4 @@ def le_full():
 
 
 if __name__ == "__main__":
-    run_parts(bars, surface, cells, constraint, plates, bore, crack, thermal, laws, torsion, notes, le_elements, le_hole, le_full)
+    run_parts(bars, surface, cells, fitted, constraint, plates, bore, crack, thermal, laws, torsion, notes, le_elements, le_hole, le_full)

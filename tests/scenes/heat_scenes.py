@@ -8,7 +8,7 @@ Bounds that follow from no theory are at most 1.5 times the gap that was measure
 """
 
 import insulated_crack
-from scene_test import QUIET, Comparison, check, check_close, observed_orders, print_table, run_parts, run_scene
+from scene_test import QUIET, Comparison, check, check_close, check_message, observed_orders, print_table, run_parts, run_scene
 
 STEADY = {"Time/Steady": "true", "Output/Write at": "", "Solver/Tolerance": "1e-12"}
 
@@ -197,6 +197,28 @@ def gmsh_plate():
     check(run.model("peridynamics")["operator form"] == "stored", "a mesh without a lattice needs stored bonds")
 
 
+def generated_ring():
+    """A mesh of a generator, its round sides followed as cells are halved: ln(2 r)/ln 2."""
+    table = Comparison("Ring of a generator, steady, against the closed form")
+    heat = 2 * 3.141592653589793 / 0.6931471805599453
+    halvings, errors = (2, 3, 4), []
+    for n in halvings:
+        run = run_quietly("generated_ring.prm", Domain__Refinements=str(n), Solver__Tolerance="1e-12")
+        errors.append(run.error("finite elements"))
+        # Of flows by the sums of nodes, of second order, too; measured: 5.4e-3, 1.4e-3, 3.4e-4
+        table.add_limit(f"{n} halvings: heat from side 1", abs(run.model("finite elements")["boundary flux"]["1"] / heat - 1), 0.13 / 4 ** n)
+    table.add("order of the error in the cells", observed_orders([2.0 ** -n for n in halvings], errors)[-1], 2, absolute=0.1)
+    shared = run_scene("prm/heat/generated_ring.prm", {"Output/Fields": "none", "Domain/Refinements": "3", "Solver/Tolerance": "1e-12"}, ranks=4)
+    table.add("4 processes: error", shared.error("finite elements") / errors[1], 1, absolute=1e-8)
+    bonds = run_quietly("generated_ring.prm", Models="peridynamics", Peridynamics__Horizon="0.06")
+    table.add_limit("peridynamics: relative error", bonds.error("peridynamics"), 5e-3)
+    table.show()
+    wrong = run_scene("prm/heat/generated_ring.prm", {"Domain/Generator arguments": "0, 0 : 1 : 0.5 : 12 : true"}, expect_error=True)
+    check_message(wrong, "'Generator arguments' in section 'Domain'", "hyper_shell")
+    wrong = run_scene("prm/heat/generated_ring.prm", {"Boundary conditions/Dirichlet": "0: 0 ; 7: 1"}, expect_error=True)
+    check_message(wrong, "of hyper_shell", "does not have", "0, 1")
+
+
 BLOCK_FALL = 0.6  # measured: 0.27 and 0.51
 BLOCK_PROBES = [(0, 0.1, 0), (0, -0.1, 0), (0.8, 0.1, 0), (0.5, 0.25, 0.5)]
 
@@ -305,5 +327,5 @@ def narrow_layer():
 
 
 if __name__ == "__main__":
-    run_parts(layers, composite, harmonics, varying_conductivity, plate_with_hole, convection, gmsh_plate,
+    run_parts(layers, composite, harmonics, varying_conductivity, plate_with_hole, convection, gmsh_plate, generated_ring,
               block_with_crack, example_3, bars_2010, closing_crack, temperature_dependent, narrow_layer)

@@ -136,6 +136,16 @@ Domain/Holes=circle: 0.5, 0.5 => 'Holes' | circle | x, y, radius
 Domain/Holes=rectangle: 0.5, 0.5, 0.2, 0.7 => 'Holes' | rectangle | second corner
 Domain/Holes=circle: 0.5, 0.5, 0.01 => 'Holes' | no centre of a cell | 'Cells'
 Domain/Shape=plate with hole & Domain/Hole center=0.3,0.3 ; 0.7,0.7 => 'Hole center' | 'Holes'
+Domain/Rims=fitted => 'Rims' | no hole
+Domain/Holes=circle: 0.5, 0.5, 0.2 & Domain/Rims=fited => 'Rims' | Did you mean 'fitted'?
+Domain/Refinements=2 => 'Refinements' | lattice | 'Cells'
+Domain/Holes=circle: 0.5, 0.5, 0.2 & Domain/Refinements=2 => 'Refinements' | 'Rims = fitted'
+Domain/Holes=circle: 0.5, 0.5, 0.2 & Domain/Rims=fitted & Domain/Refinements=13 => 'Refinements' | at most 12
+Domain/Shape=generator => 'Generator' | hyper_shell
+Domain/Shape=generator & Domain/Generator=hyper_shel => 'Generator' | Did you mean 'hyper_shell'?
+Domain/Generator=hyper_shell => 'Generator' | 'Shape' | not 'generator'
+Domain/Shape=generator & Domain/Generator=hyper_ball & Domain/Holes=circle: 0.5, 0.5, 0.2 => 'Holes' | generator
+Models=finite elements & Domain/Shape=generator & Domain/Generator=hyper_ball & Domain/Coarsening=1 & Domain/Fine where=x => 'Coarsening' | 'Refinements'
 Dimension=3 & Domain/Lower corner=0, 0, 0 & Domain/Upper corner=1, 1, 1 & Domain/Cells=4, 4, 4 & Output/Probes= & Cracks/Polygons=disc: 0.5,0.5,0.5, 0,0,0, 0.2 => 'Polygons' | disc | normal
 Dimension=3 & Domain/Lower corner=0, 0, 0 & Domain/Upper corner=1, 1, 1 & Domain/Cells=4, 4, 4 & Output/Probes= & Cracks/Polygons=disc: 0.5,0.5,0.5, 0,0,1 => 'Polygons' | disc | 7 numbers
 Boundary conditions/Flux=front: 3 => 'Flux' | 'front' | left, right, bottom, top

@@ -193,6 +193,7 @@ namespace PeriDeal
     void parse_cells();
     void require_countable(const std::string &entry) const;
 
+    void declare_mesh();
     void parse_fine_part();
     void parse_mesh();
 
