@@ -164,10 +164,14 @@ namespace PeriDeal
                     "Generator",
                     "'" + domain.files.generator +
                       "' makes other cells than quadrilaterals and hexahedra.");
+      for (const auto &cell : mesh.active_cell_iterators())
+        domain.refuse(!(cell->measure() > 0.),
+                      "Generator arguments",
+                      "'" + domain.files.arguments + "': '" + domain.files.generator +
+                        "' makes cells from them that are turned inside out.");
       if (mesh.n_levels() == 1)
         return described(mesh);
-      GivenMesh<dim>     given; // some are refined once
-      Triangulation<dim> flat;
+      Triangulation<dim> flat; // some are refined once
       GridGenerator::flatten_triangulation(mesh, flat);
       for (const types::manifold_id id : mesh.get_manifold_ids())
         if (id != numbers::flat_manifold_id)
