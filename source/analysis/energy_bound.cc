@@ -254,8 +254,7 @@ namespace PeriDeal
       if (lift.size() > 0)
         squares[3] +=
           weighted_gradient(field, mesh.unit.inside.weights, lifting.gradient(lift)).squaredNorm();
-      squares[4] +=
-        dim * CellConstants<dim>(corners_of<dim>(cell)).stretch / field.conductivity.minCoeff();
+      squares[4] += dim * other.stretch / field.conductivity.minCoeff();
       for_each_open_side(
         mesh,
         solution.problem,

@@ -250,6 +250,7 @@ namespace PeriDeal
     const auto              &weights = mesh.unit.inside.weights;
     const Eigen::VectorXd    rest    = in_cell.at.determinants.cwiseProduct(in_cell.source) -
                                  mesh.unit.inside.products.transpose() * of_cell.divergence;
+    of_cell.oscillation.stretch = constants.stretch;
     of_cell.oscillation.cell =
       constants.poincare *
       std::sqrt(

@@ -119,8 +119,9 @@ namespace PeriDeal
     /** What one owned cell adds to the bound beside it. */
     struct Oscillation
     {
-      double cell  = 0.; // over the norm of the gradient in the cell
-      double sides = 0.; // square; over that on sides with a coefficient
+      double cell    = 0.; // over the norm of the gradient in the cell
+      double sides   = 0.; // square; over that on sides with a coefficient
+      double stretch = 0.; // as CellConstants
     };
 
     const Oscillation &oscillation(const Cell &cell) const

@@ -108,13 +108,17 @@ namespace PeriDeal
     for (unsigned int v = 0; v < corners.size(); ++v)
       for (unsigned int d = 0; d < dim; ++d)
         x(d, v) = corners[v][d];
+    using Columns              = Eigen::Matrix<double, dim, Eigen::Dynamic>;
+    const Columns            p = x * unit.hats;
+    std::array<Columns, dim> gradients;
+    for (unsigned int d = 0; d < dim; ++d)
+      gradients[d] = x * unit.hat_gradients[d];
     for (unsigned int q = 0; q < points.size(); ++q)
       {
-        const Eigen::Matrix<double, dim, 1> p = x * unit.hats.col(q);
         for (unsigned int d = 0; d < dim; ++d)
           {
-            points[q][d]   = p[d];
-            maps[q].col(d) = x * unit.hat_gradients[d].col(q);
+            points[q][d]   = p(d, q);
+            maps[q].col(d) = gradients[d].col(q);
           }
         determinants[q] = maps[q].determinant();
       }

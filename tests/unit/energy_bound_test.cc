@@ -236,6 +236,54 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** Processor time since a start, in seconds. */
+    double processor_seconds(const std::clock_t start)
+    {
+      return double(std::clock() - start) / CLOCKS_PER_SEC;
+    }
+
+
+    /** How long the bound of a larger problem takes, and operator and solution. */
+    template <int dim>
+    void print_seconds(const Case<dim> &test, const Settings &more, const std::string &words)
+    {
+      const Bounded<dim> solved(test.settings + more);
+      const std::clock_t start = std::clock();
+      const auto field       = field_of_elements<dim>(solved.problem.handler, solved.problem.scene);
+      FieldOperator<dim> &op = *field;
+      Vector              u  = solved.problem.vector();
+      solve_steady(op, u, 0., 1e-10, 4000);
+      const double       of_solution = processor_seconds(start);
+      const std::clock_t again       = std::clock();
+      const EnergyBound  bound       = solved.bounds.of(u);
+      const double       of_bound    = processor_seconds(again);
+      EXPECT_GT(bound.bound, 0.);
+      if (this_process() == 0)
+        std::printf("| %s | %s | %u | %.2f | %.2f | %.2f |\n",
+                    test.name.c_str(),
+                    words.c_str(),
+                    static_cast<unsigned int>(u.size()),
+                    of_solution,
+                    of_bound,
+                    of_bound / of_solution);
+    }
+
+
+    void print_all_seconds()
+    {
+      print_seconds<2>(smooth(), cells(256), "Q1");
+      print_seconds<2>(smooth(), cells(128) + degree(2), "Q2");
+      print_seconds<2>(smooth(), cells(96) + degree(3), "Q3");
+      print_seconds<2>(graded(), cells(256), "Q1");
+      print_seconds<2>(distorted(192), {}, "Q1");
+      print_seconds<3>(cube(), cells(32, 3), "Q1");
+      print_seconds<3>(cube(), cells(16, 3) + degree(2), "Q2");
+    }
+  } // namespace
+
+
   TEST(EnergyBounds, never_below_the_error)
   {
     using Counts      = std::vector<unsigned int>;
@@ -281,6 +329,8 @@ namespace PeriDeal
 
   TEST(EnergyBounds, in_one_and_three_dimensions)
   {
+    if (with_tables())
+      print_all_seconds();
     const auto    wave = [](const Point<1> &p) { return std::sin(numbers::PI * p[0]); };
     const Case<1> line{"line",
                        {{"Time/Steady", "true"},
@@ -332,56 +382,6 @@ namespace PeriDeal
                            words),
             other.name + ' ' + words);
         }
-  }
-
-
-  namespace
-  {
-    /** Processor time since a start, in seconds. */
-    double processor_seconds(const std::clock_t start)
-    {
-      return double(std::clock() - start) / CLOCKS_PER_SEC;
-    }
-
-
-    /** How long the bound of a larger problem takes, and operator and solution. */
-    template <int dim>
-    void print_seconds(const Case<dim> &test, const Settings &more, const std::string &words)
-    {
-      const Bounded<dim> solved(test.settings + more);
-      const std::clock_t start = std::clock();
-      const auto field       = field_of_elements<dim>(solved.problem.handler, solved.problem.scene);
-      FieldOperator<dim> &op = *field;
-      Vector              u  = solved.problem.vector();
-      solve_steady(op, u, 0., 1e-10, 4000);
-      const double       of_solution = processor_seconds(start);
-      const std::clock_t again       = std::clock();
-      const EnergyBound  bound       = solved.bounds.of(u);
-      const double       of_bound    = processor_seconds(again);
-      EXPECT_GT(bound.bound, 0.);
-      if (this_process() == 0)
-        std::printf("| %s | %s | %u | %.2f | %.2f | %.2f |\n",
-                    test.name.c_str(),
-                    words.c_str(),
-                    static_cast<unsigned int>(u.size()),
-                    of_solution,
-                    of_bound,
-                    of_bound / of_solution);
-    }
-  } // namespace
-
-
-  TEST(EnergyBounds, take_about_as_long_as_solutions)
-  {
-    if (!with_tables())
-      GTEST_SKIP() << "PERIDEAL_TABLES: times are measured and not asserted";
-    print_seconds<2>(smooth(), cells(256), "Q1");
-    print_seconds<2>(smooth(), cells(128) + degree(2), "Q2");
-    print_seconds<2>(smooth(), cells(96) + degree(3), "Q3");
-    print_seconds<2>(graded(), cells(256), "Q1");
-    print_seconds<2>(distorted(192), {}, "Q1");
-    print_seconds<3>(cube(), cells(32, 3), "Q1");
-    print_seconds<3>(cube(), cells(16, 3) + degree(2), "Q2");
   }
 
 
