@@ -23,9 +23,9 @@ namespace PeriDeal
   /**
    * How many cells along the longest edge of the box around a body its formulas need: the fewest,
    * of powers of two, on which the linear interpolant of each is right to a fifth of its variation
-   * in the mean square, cells being as long as wide. Sources, materials, forces and initial fields in
-   * the body, what is given on its sides, and the parts that it is given on; formulas of time are
-   * looked at four times. A layer that grows from the sides needs some cells, too
+   * in the mean square, cells being as long as wide. Sources, materials, forces and initial fields
+   * in the body, what is given on its sides, and the parts that it is given on; formulas of time
+   * are looked at four times. A layer that grows from the sides needs some cells, too
    * (fineness_of_first_layer()). At most as many as are looked at. A solution on coarser cells may
    * have missed what they describe.
    *
