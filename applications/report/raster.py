@@ -271,17 +271,36 @@ def dual_mesh(mesh):
     return centers, quads[(quads >= 0).all(axis=1)], mesh.cells[:, 0]
 
 
+def is_inside(ends, middles, corners):
+    """Which edges of one cell lie on others: where a mesh is graded, a long one and the two halves of it."""
+    number = {tuple(corner): k for k, corner in enumerate(corners.tolist())}
+    row = {frozenset(pair): k for k, pair in enumerate(ends.tolist())}
+    inside = np.zeros(len(ends), bool)
+    for k, ((a, b), middle) in enumerate(zip(ends.tolist(), middles.tolist())):
+        # rounding may put the middle into the next place
+        for near in ((i, j) for i in (0, -1, 1) for j in (0, -1, 1)):
+            m = number.get((middle[0] + near[0], middle[1] + near[1]))
+            halves = [row.get(frozenset((a, m))), row.get(frozenset((m, b)))] if m is not None else [None]
+            if None not in halves:
+                inside[[k, *halves]] = True
+                break
+    return inside
+
+
 def boundary_lines(mesh, where=None):
     """The edge of a mesh of quadrilaterals as lines of points: (K x 2) each, closed ones end where they begin.
 
     Cells with vertices of their own at one place are neighbours. where: (N x 2) places to draw the vertices at."""
     nodes = mesh.nodes if where is None else where
     lower, extent = mesh.nodes.min(axis=0), max(np.ptp(mesh.nodes, axis=0).max(), 1e-300)
-    place = np.unique(np.round((mesh.nodes - lower) / (1e-7 * extent)).astype(np.int64), axis=0, return_inverse=True)[1].ravel()
+    grid = lambda points: np.round((points - lower) / (1e-7 * extent)).astype(np.int64)
+    corners, place = np.unique(grid(mesh.nodes), axis=0, return_inverse=True)
+    place = place.ravel()
     vertices = np.concatenate([mesh.cells[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 3), (3, 0))])
     ends = np.sort(place[vertices], axis=1)
     first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)[1:]
     edges = vertices[first[count == 1]]
+    edges = edges[~is_inside(place[edges], grid(mesh.nodes[edges].mean(axis=1)), corners)]
     leaving = {}
     for k, a in enumerate(place[edges[:, 0]]):
         leaving.setdefault(int(a), []).append(k)
