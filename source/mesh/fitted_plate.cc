@@ -202,19 +202,17 @@ namespace PeriDeal
     }
 
 
-    /** The smallest sine of an angle at a corner of the cells; negative if one is folded. */
-    double worst_sine(const FittedPlate &plate, const std::vector<unsigned int> &cells)
+    /** The smallest sine of an angle at a corner of a cell; negative if it is folded. */
+    double worst_sine(const FittedPlate &plate, const std::array<unsigned int, 4> &cell)
     {
       double worst = 1.;
-      for (const unsigned int c : cells)
-        for (unsigned int k = 0; k < 4; ++k)
-          {
-            const auto     &cell = plate.cells[c];
-            const Point<2> &p    = plate.vertices[cell[k]];
-            const double    a    = p.distance(plate.vertices[cell[(k + 1) % 4]]),
-                         b       = p.distance(plate.vertices[cell[(k + 3) % 4]]);
-            worst                = std::min(worst, turn(plate, cell, k) / (a * b));
-          }
+      for (unsigned int k = 0; k < 4; ++k)
+        {
+          const Point<2> &p = plate.vertices[cell[k]];
+          const double    a = p.distance(plate.vertices[cell[(k + 1) % 4]]),
+                       b    = p.distance(plate.vertices[cell[(k + 3) % 4]]);
+          worst             = std::min(worst, turn(plate, cell, k) / (a * b));
+        }
       return worst;
     }
 
@@ -244,6 +242,20 @@ namespace PeriDeal
             }
       }
 
+      /** A vertex on a rim, between two others along it; corners of polygons stay. */
+      struct RimVertex
+      {
+        unsigned int vertex, hole;
+        std::size_t  before, after; // the numbers of these two
+        double       place;
+        bool         stays;
+      };
+
+      const std::vector<RimVertex> &rim_vertices() const
+      {
+        return on_rim;
+      }
+
       const std::vector<unsigned int> &new_cells() const
       {
         return made;
@@ -254,8 +266,17 @@ namespace PeriDeal
       {
         const std::vector<double> places = places_on_rim(loop, holes[h]);
         const unsigned int        first = plate.vertices.size(), n = loop.size();
-        for (const double place : places)
-          plate.vertices.push_back(holes[h].point_on_rim(place));
+        const std::size_t         start = on_rim.size();
+        for (unsigned int k = 0; k < n; ++k)
+          {
+            on_rim.push_back({first + k,
+                              h,
+                              start + (k + n - 1) % n,
+                              start + (k + 1) % n,
+                              places[k],
+                              is_corner(holes[h], places[k])});
+            plate.vertices.push_back(holes[h].point_on_rim(places[k]));
+          }
         for (unsigned int k = 0; k < n; ++k)
           {
             const unsigned int l = (k + 1) % n;
@@ -291,6 +312,19 @@ namespace PeriDeal
                                       with_corners(places, hole, length, sign);
       }
 
+      static bool is_corner(const Hole &hole, const double place)
+      {
+        const double length = hole.rim_length();
+        double       corner = 0.;
+        for (std::size_t c = 0; c < hole.corners.size(); ++c)
+          {
+            if (std::abs(std::remainder(place - corner, length)) < 1e-9 * length)
+              return true;
+            corner += hole.corners[c].distance(hole.corners[(c + 1) % hole.corners.size()]);
+          }
+        return false;
+      }
+
       /** Where stairs crowd, points of a circle move towards the middle of their neighbours. */
       static std::vector<double> evened(std::vector<double> places,
                                         const double        length,
@@ -310,6 +344,34 @@ namespace PeriDeal
               }
           }
         return places;
+      }
+
+      /** From one corner on over a way, in so many steps: near the nearest points, but apart. */
+      static std::vector<double> relaxed(const std::vector<double> &places,
+                                         const std::size_t          from,
+                                         const std::size_t          steps,
+                                         const double               start,
+                                         const double               way,
+                                         const double               length)
+      {
+        constexpr unsigned int n_passes = 8;
+        std::vector<double>    s(steps + 1);
+        for (std::size_t k = 0; k <= steps; ++k)
+          {
+            double nearest = places[(from + k) % places.size()] - start;
+            nearest -= std::round((nearest - way * k / steps) / length) * length;
+            s[k] = std::clamp(nearest / way, 0., 1.);
+          }
+        s[0]     = 0.;
+        s[steps] = 1.;
+        for (unsigned int pass = 0; pass < n_passes; ++pass)
+          for (std::size_t k = 1; k < steps; ++k)
+            s[k] = 0.25 * s[k - 1] + 0.5 * s[k] + 0.25 * s[k + 1];
+        std::vector<double> result;
+        for (std::size_t k = 0; k < steps; ++k)
+          // some of an even division, so that none coincide
+          result.push_back(start + way * (0.9 * s[k] + 0.1 * k / steps));
+        return result;
       }
 
       std::vector<double> with_corners(const std::vector<double> &places,
@@ -358,8 +420,10 @@ namespace PeriDeal
             all += way;
             if (steps == 0 || way <= 0. || all > (1. + 1e-6) * length)
               lattice.refuse("'" + hole.text + "' has corners that are less than a cell apart.");
-            for (std::size_t s = 0; s < steps; ++s)
-              result[(from + s) % n] = start + sign * way * s / steps;
+            const std::vector<double> between =
+              relaxed(places, from, steps, start, sign * way, length);
+            for (std::size_t k = 0; k < steps; ++k)
+              result[(from + k) % n] = between[k];
           }
         return result;
       }
@@ -368,59 +432,127 @@ namespace PeriDeal
       const CutLattice         &lattice;
       const std::vector<Hole>  &holes;
       std::vector<unsigned int> made;
+      std::vector<RimVertex>    on_rim;
     };
 
 
-    /**
-     * Moves the vertices between the row at a rim and the lattice, and those next to them, towards
-     * the middle of their neighbours.
-     */
-    void smooth(FittedPlate                     &plate,
-                const std::vector<unsigned int> &rows,
-                const CutLattice                &lattice)
+    /** Moves vertices beside rims, and along them, as long as the worst angles get better. */
+    class Smoothing
     {
-      std::map<unsigned int, std::set<unsigned int>>                neighbors;
-      std::map<std::pair<unsigned int, unsigned int>, unsigned int> n_cells;
-      for (const auto &cell : plate.cells)
-        for (unsigned int k = 0; k < 4; ++k)
-          {
-            const unsigned int a = cell[k], b = cell[(k + 1) % 4];
-            neighbors[a].insert(b);
-            neighbors[b].insert(a);
-            ++n_cells[std::minmax(a, b)];
-          }
-      std::set<unsigned int> moving, near, border;
-      for (const auto &[edge, n] : n_cells)
-        if (n == 1)
-          border.insert({edge.first, edge.second});
-      for (const unsigned int c : rows)
-        for (const unsigned int v : plate.cells[c])
-          near.insert(v);
-      for (unsigned int ring = 0; ring < 2; ++ring)
-        {
-          moving = near;
-          for (const unsigned int v : moving)
-            near.insert(neighbors[v].begin(), neighbors[v].end());
-        }
-      const FittedPlate         before = plate;
-      std::vector<unsigned int> all(plate.cells.size());
-      for (unsigned int c = 0; c < all.size(); ++c)
-        all[c] = c;
-      for (unsigned int pass = 0; pass < 10; ++pass)
-        for (const unsigned int v : moving)
-          if (border.count(v) == 0)
+    public:
+      Smoothing(FittedPlate &plate, const RimRows &rows, const std::vector<Hole> &holes)
+        : plate(plate)
+        , holes(holes)
+        , on_rim(rows.rim_vertices())
+        , cells(plate.vertices.size())
+        , neighbors(plate.vertices.size())
+      {
+        std::map<std::pair<unsigned int, unsigned int>, unsigned int> n_cells;
+        for (unsigned int c = 0; c < plate.cells.size(); ++c)
+          for (unsigned int k = 0; k < 4; ++k)
             {
-              Tensor<1, 2> sum;
-              for (const unsigned int w : neighbors[v])
-                sum += plate.vertices[w] - Point<2>();
-              plate.vertices[v] = 0.5 * plate.vertices[v] + 0.5 / neighbors[v].size() * sum;
+              const unsigned int a = plate.cells[c][k], b = plate.cells[c][(k + 1) % 4];
+              cells[a].push_back(c);
+              neighbors[a].insert(b);
+              neighbors[b].insert(a);
+              ++n_cells[std::minmax(a, b)];
             }
-      constexpr double least = 0.1; // of the sine of an angle
-      if (worst_sine(plate, all) < worst_sine(before, all))
-        plate = before;
-      if (worst_sine(plate, all) < least)
-        lattice.refuse("cells at a hole would be folded or nearly so.");
-    }
+        std::set<unsigned int> border, near;
+        for (const auto &[edge, n] : n_cells)
+          if (n == 1)
+            border.insert({edge.first, edge.second});
+        for (const unsigned int c : rows.new_cells())
+          near.insert(plate.cells[c].begin(), plate.cells[c].end());
+        for (unsigned int ring = 0; ring < 2; ++ring)
+          for (const unsigned int v : std::set<unsigned int>(near))
+            near.insert(neighbors[v].begin(), neighbors[v].end());
+        for (const unsigned int v : near)
+          if (border.count(v) == 0)
+            inside.push_back(v);
+      }
+
+      void run()
+      {
+        constexpr unsigned int n_passes = 60;
+        for (unsigned int pass = 0; pass < n_passes; ++pass)
+          {
+            for (const unsigned int v : inside)
+              {
+                Tensor<1, 2> sum;
+                for (const unsigned int w : neighbors[v])
+                  sum += plate.vertices[w] - Point<2>();
+                const Point<2> middle(Point<2>() + 1. / neighbors[v].size() * sum),
+                  here = plate.vertices[v];
+                for (const double share : {1., 0.5, 0.2, -0.2})
+                  try_at(v, (1. - share) * here + share * middle);
+                // Away from the longest diagonal of what is folded there is no mean to go to.
+                const double step = 0.1 * here.distance(plate.vertices[*neighbors[v].begin()]);
+                for (unsigned int k = 0; k < 8; ++k)
+                  try_at(v,
+                         plate.vertices[v] +
+                           step * Point<2>(std::cos(k * 0.785), std::sin(k * 0.785)));
+              }
+            for (std::size_t k = 0; k < on_rim.size(); ++k)
+              slide(k);
+          }
+      }
+
+      double worst() const
+      {
+        double sine = 1.;
+        for (const auto &cell : plate.cells)
+          sine = std::min(sine, worst_sine(plate, cell));
+        return sine;
+      }
+
+    private:
+      double worst_at(const unsigned int v) const
+      {
+        double sine = 1.;
+        for (const unsigned int c : cells[v])
+          sine = std::min(sine, worst_sine(plate, plate.cells[c]));
+        return sine;
+      }
+
+      bool try_at(const unsigned int v, const Point<2> &p)
+      {
+        constexpr double enough = 0.75; // better is no aim
+        const double     before = worst_at(v);
+        const Point<2>   here   = plate.vertices[v];
+        if (before > enough)
+          return false;
+        plate.vertices[v] = p;
+        if (worst_at(v) > before)
+          return true;
+        plate.vertices[v] = here;
+        return false;
+      }
+
+      /** Along the rim, between the two others. */
+      void slide(const std::size_t k)
+      {
+        RimRows::RimVertex &one = on_rim[k];
+        if (one.stays)
+          return;
+        const Hole  &hole   = holes[one.hole];
+        const double length = hole.rim_length(),
+                     before = std::remainder(on_rim[one.before].place - one.place, length),
+                     after  = std::remainder(on_rim[one.after].place - one.place, length);
+        for (const double step : {0.5 * (before + after), 0.25 * before, 0.25 * after})
+          if (try_at(one.vertex, hole.point_on_rim(one.place + step)))
+            {
+              one.place += step;
+              return;
+            }
+      }
+
+      FittedPlate                           &plate;
+      const std::vector<Hole>               &holes;
+      std::vector<RimRows::RimVertex>        on_rim;
+      std::vector<std::vector<unsigned int>> cells;
+      std::vector<std::set<unsigned int>>    neighbors;
+      std::vector<unsigned int>              inside;
+    };
   } // namespace
 
 
@@ -466,7 +598,13 @@ namespace PeriDeal
     RimRows rows(plate, lattice, holes);
     rows.add(next, hole_of);
     if (!next.empty())
-      smooth(plate, rows.new_cells(), lattice);
+      {
+        constexpr double least = 0.1; // of the sine of an angle
+        Smoothing        smoothing(plate, rows, holes);
+        smoothing.run();
+        if (smoothing.worst() < least)
+          lattice.refuse("cells at a hole would be folded or nearly so.");
+      }
     return plate;
   }
 } // namespace PeriDeal

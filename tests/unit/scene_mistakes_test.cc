@@ -332,7 +332,7 @@ Models=finite elements & Domain/Coarsening=1 & Domain/Fine where=x - 0.5 => 'Hea
         }
     };
     expect_not_chosen({}, R"(
-Domain/Shape=plate with hole & Output/Probes= => other than a box
+Domain/Shape=plate with hole & Output/Probes= & Peridynamics/Horizon=0.3 => other than a box
 Cracks/Segments=0.25,0.5 ; 0.75,0.5 & Cracks/Growth=2: 0, 0.1,0 & Peridynamics/Horizon=0.3 => grow or change
 Cracks/Segments=0.25,0.5 ; 0.75,0.5 & Cracks/Transmission=0.5 => 'Transmission' of cracks | 'Contact conductance'
 Output/Probes= & Accuracy/Measure=probes => 'Measure' | has no point
