@@ -21,6 +21,7 @@
 #include <functional>
 #include <sstream>
 
+#include "guaranteed.h"
 #include "search.h"
 
 namespace PeriDeal
@@ -116,6 +117,11 @@ namespace PeriDeal
         say_horizon();
         say_constant();
         const Json more = {{"accuracy", describe()}};
+        if (more["accuracy"].contains("guaranteed"))
+          progress.line(
+            "guaranteed: what enters through '" + scene.accuracy.side + "' lies between " +
+            number_text(more["accuracy"]["guaranteed"]["lower"].get<double>()) + " and " +
+            number_text(more["accuracy"]["guaranteed"]["upper"].get<double>()));
         if (scene.time.steady)
           return chosen->last().simulation->write(std::move(files), more, progress);
         progress.line("computing it again, with results on the way");
@@ -391,6 +397,9 @@ namespace PeriDeal
                            (next.model == ModelKind::peridynamics ? nonlocal : classical).expected_time(next)}}}};
         if (is_nonlocal)
           all["horizon effect"] = horizon_effect;
+        if (const Json told = guaranteed_flow(*chosen->last().scene, *chosen->last().simulation);
+            !told.is_null())
+          all["guaranteed"] = told;
         for (const unsigned int d : constant)
           all["constant along"].push_back(std::string(1, "xyz"[d]));
         return all;

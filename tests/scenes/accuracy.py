@@ -241,6 +241,14 @@ def others():
     flow = run_scene("set Dimension = 2\nset Models = auto\nsubsection Material\n  set Conductivity = 1 + y\nend\nsubsection Boundary conditions\n"
                      "  set Dirichlet = left: 0; right: 1\nend\nsubsection Time\n  set Steady = true\nend\n", {"Accuracy/Measure": "flow: right", "Accuracy/Tolerance": "1e-4"})
     check_close(flow.model("auto")["boundary flux"]["right"], 1.5, relative=1e-4, what="what enters on the right")
+    # Guaranteed: around the true flow 1 - 1/ln 2, whatever the estimate says.
+    heated = ("set Dimension = 2\nset Models = auto\nsubsection Material\n  set Conductivity = 1 + x\nend\nsubsection Initial and source\n  set Source = 1\nend\n"
+              "subsection Boundary conditions\n  set Dirichlet = left: 0; right: 0\nend\nsubsection Time\n  set Steady = true\nend\n")
+    for ranks in (1, 2):
+        between = run_scene(heated, {"Accuracy/Measure": "flow: left", "Accuracy/Tolerance": "1e-2"}, ranks=ranks).summary["accuracy"]["guaranteed"]
+        exact = 1 - 1 / math.log(2)
+        check(between["lower"] <= exact <= between["upper"], f"the flow {exact} lies in {between}")
+        check_less(between["upper"] - between["lower"], 1e-2 * abs(exact), "width of the interval")
     # The entries that were chosen give the same result without `auto`.
     again = run_scene(text, {**alone.summary["accuracy"]["settings"]})
     model = alone.summary["accuracy"]["model"]

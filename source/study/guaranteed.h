@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/simulation/simulation.h>
+
+#include <nlohmann/json.hpp>
+
+namespace PeriDeal
+{
+  /**
+   * "lower" and "upper", between which the true flow through the side of `Measure` lies, whatever
+   * an estimate says, and a "reservation" if something is not bounded. Of steady diffusion by
+   * finite elements; null for others (EnergyBounds::why_not()). Collective.
+   */
+  template <int dim>
+  nlohmann::ordered_json guaranteed_flow(const Scene<dim> &scene, Simulation<dim> &simulation);
+} // namespace PeriDeal
