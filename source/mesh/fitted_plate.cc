@@ -107,13 +107,9 @@ namespace PeriDeal
           for (unsigned int i = 0; i < n[0]; ++i)
             for (unsigned int k = 0; k < holes.size(); ++k)
               {
-                double distance = std::numeric_limits<double>::max();
-                for (unsigned int a = 0; a < 3; ++a)
-                  for (unsigned int b = 0; b < 3; ++b)
-                    if (!aligned[k] || (a == 1 && b == 1))
-                      distance =
-                        std::min(distance, holes[k].distance(vertex(i + 0.5 * a, j + 0.5 * b)));
-                int &mine = state[i + n[0] * j];
+                const double distance = aligned[k] ? holes[k].distance(vertex(i + 0.5, j + 0.5)) :
+                                                     nearest_in_cell(holes[k], i, j);
+                int         &mine     = state[i + n[0] * j];
                 if (aligned[k] && distance < 0.)
                   mine = gone;
                 else if (!aligned[k] && distance < least * spacing())
@@ -125,6 +121,22 @@ namespace PeriDeal
                       mine = k;
                   }
               }
+      }
+
+      /** The smallest distance of points of a cell, so dense that no hole falls between them. */
+      double nearest_in_cell(const Hole &hole, const unsigned int i, const unsigned int j) const
+      {
+        constexpr double            dense = 0.5; // of the shorter edge
+        std::array<unsigned int, 2> n_steps;
+        for (unsigned int d = 0; d < 2; ++d)
+          n_steps[d] = static_cast<unsigned int>(std::ceil(h[d] / (dense * spacing()) - 1e-9));
+        double nearest = std::numeric_limits<double>::max();
+        for (unsigned int a = 0; a <= n_steps[0]; ++a)
+          for (unsigned int b = 0; b <= n_steps[1]; ++b)
+            nearest = std::min(nearest,
+                               hole.distance(vertex(i + static_cast<double>(a) / n_steps[0],
+                                                    j + static_cast<double>(b) / n_steps[1])));
+        return nearest;
       }
 
       /** The hole that made room of one of the cells next to this one, and how many it has. */
@@ -166,6 +178,9 @@ namespace PeriDeal
 
       void require_room() const
       {
+        for (unsigned int k = 0; k < holes.size(); ++k)
+          if (!aligned[k] && std::count(state.begin(), state.end(), static_cast<int>(k)) == 0)
+            refuse("'" + holes[k].text + "' lies outside the plate.");
         for (int j = 0; j < static_cast<int>(n[1]); ++j)
           for (int i = 0; i < static_cast<int>(n[0]); ++i)
             if (const int hole = hole_at(i, j); hole >= 0)

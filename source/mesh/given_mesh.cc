@@ -28,7 +28,8 @@ namespace PeriDeal
   void GivenMesh<dim>::mark(Triangulation<dim> &mesh) const
   {
     for (const auto &[id, manifold] : manifolds)
-      mesh.set_manifold(id, *manifold);
+      if (manifold)
+        mesh.set_manifold(id, *manifold);
     for (const auto &cell : mesh.cell_iterators_on_level(0))
       {
         const auto index = static_cast<unsigned int>(cell->index());
@@ -44,11 +45,29 @@ namespace PeriDeal
             cell->face(f)->set_boundary_id(side != sides.end() ? side->second : crack_boundary_id);
           }
       }
+    for (const auto &[id, manifold] : manifolds)
+      if (!manifold)
+        if constexpr (dim > 1)
+          {
+            TransfiniteInterpolationManifold<dim> between; // knows the mesh that it is of
+            between.initialize(mesh);
+            mesh.set_manifold(id, between);
+          }
   }
 
 
   namespace
   {
+    template <int dim>
+    bool is_transfinite(const Manifold<dim> &manifold)
+    {
+      if constexpr (dim > 1)
+        return dynamic_cast<const TransfiniteInterpolationManifold<dim> *>(&manifold) != nullptr;
+      else
+        return false;
+    }
+
+
     /** A mesh on one process, as lists. */
     template <int dim>
     GivenMesh<dim> described(const Triangulation<dim> &mesh)
@@ -59,7 +78,9 @@ namespace PeriDeal
         GridTools::get_coarse_mesh_description(mesh);
       for (const types::manifold_id id : mesh.get_manifold_ids())
         if (id != numbers::flat_manifold_id)
-          given.manifolds.emplace(id, mesh.get_manifold(id).clone());
+          given.manifolds.emplace(
+            id,
+            is_transfinite(mesh.get_manifold(id)) ? nullptr : mesh.get_manifold(id).clone());
       for (const auto &cell : mesh.active_cell_iterators())
         {
           const unsigned int index = cell->active_cell_index();
@@ -137,7 +158,8 @@ namespace PeriDeal
           follows = false;
         else if (follows && line.find_first_not_of(' ') != std::string::npos)
           reason += (reason.empty() ? "" : " ") + line.substr(line.find_first_not_of(' '));
-      return reason;
+      constexpr std::size_t longest = 160; // else it is a pattern that nobody reads
+      return reason.size() < longest ? reason : "";
     }
 
 
@@ -154,11 +176,14 @@ namespace PeriDeal
       catch (const std::exception &error)
         {
           const std::string reason = reason_of(error);
-          domain.refuse(true,
-                        "Generator arguments",
-                        "'" + domain.files.arguments + "': deal.II makes no mesh of dimension " +
-                          std::to_string(dim) + " by '" + domain.files.generator + "' from them" +
-                          (reason.empty() ? "." : ": " + reason));
+          domain.refuse(
+            true,
+            "Generator arguments",
+            "'" + domain.files.arguments + "': deal.II makes no mesh of dimension " +
+              std::to_string(dim) + " by '" + domain.files.generator + "' from them" +
+              (reason.empty() ?
+                 ". It needs all arguments of the function of that name in deal.II's GridGenerator." :
+                 ": " + reason));
         }
       domain.refuse(mesh.n_active_cells() == 0 || !mesh.all_reference_cells_are_hyper_cube(),
                     "Generator",

@@ -115,7 +115,11 @@ namespace PeriDeal
     {
       if (domain.has_lattice())
         return BoundingBox<dim>({domain.lower, domain.upper});
-      return BoundingBox<dim>(mesh.get_vertices());
+      std::vector<Point<dim>> corners; // of coarse cells, which all processes know
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int v : cell->vertex_indices())
+          corners.push_back(cell->vertex(v));
+      return BoundingBox<dim>(corners);
     }
   } // namespace
 

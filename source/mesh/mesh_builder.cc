@@ -10,11 +10,13 @@
 
 #include <perideal/base/clipped.h>
 #include <perideal/base/instantiate.h>
+#include <perideal/base/memory.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/given_mesh.h>
 #include <perideal/mesh/grading.h>
 #include <perideal/mesh/mesh_builder.h>
 #include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <array>
@@ -259,6 +261,24 @@ namespace PeriDeal
     }
 
 
+    /** Throws UserError where so many halvings would take more memory than there is. Collective. */
+    template <int dim>
+    void require_memory_for(const Domain<dim> &domain,
+                            const std::size_t  n_coarse,
+                            const MPI_Comm     communicator)
+    {
+      constexpr double   of_a_cell = 1000.; // bytes of a triangulation and its numbering, at least
+      const unsigned int levels    = domain.coarsening.refinements - domain.coarsening.times;
+      const double       n_cells   = n_coarse * std::exp2(dim * levels);
+      const bool         too_many  = of_a_cell * n_cells > available_memory(communicator);
+      domain.refuse(too_many,
+                    "Refinements",
+                    "found " + std::to_string(domain.coarsening.refinements) + ", which makes " +
+                      number_text(n_cells) + " of the " + std::to_string(n_coarse) +
+                      " cells of the mesh, more than there is memory for. Choose fewer.");
+    }
+
+
     /** Coarse cells, which are to be refined `coarsening.refinements` times. Collective. */
     template <int dim>
     GivenMesh<dim> coarse_mesh(const Scene<dim>         &scene,
@@ -266,6 +286,7 @@ namespace PeriDeal
                                std::vector<std::string> &notes)
     {
       GivenMesh<dim> given = given_mesh(scene.domain, communicator);
+      require_memory_for(scene.domain, given.coarse.cells.size(), communicator);
       note_cracks_on_faces(given.coarse, scene.cracks, notes);
       return given;
     }

@@ -123,7 +123,7 @@ namespace PeriDeal
                       const MPI_Comm            communicator)
   {
     json                     summary  = describe_start(scene, text, communicator);
-    static const char *const shapes[] = {"box", "plate with hole", "mesh file", "image"};
+    static const char *const shapes[] = {"box", "plate with hole", "mesh file", "image", "generator"};
     const auto               corners =
       scene.domain.has_extra_layers() ?
                       std::make_pair(scene.domain.extra.body_lower, scene.domain.extra.body_upper) :

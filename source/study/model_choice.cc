@@ -461,7 +461,12 @@ namespace PeriDeal
     double fineness = attempts.coarsest();
     for (unsigned int k = 0; k < 5; ++k, fineness *= attempts.first_ratio())
       {
-        const Attempt     attempt  = attempts.at(fineness);
+        const Attempt attempt = attempts.at(fineness);
+        if (body.given)
+          {
+            progress.line("  " + short_name(attempt));
+            continue;
+          }
         const auto        variant  = scene_variant(scene, attempt.settings);
         const RunEstimate estimate = estimate_run(*variant, communicator);
         progress.line("  " + short_name(attempt) + ": " +

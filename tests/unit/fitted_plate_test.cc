@@ -96,6 +96,21 @@ TEST(FittedPlates, polygons_keep_their_corners)
 }
 
 
+TEST(FittedPlates, no_hole_is_lost_in_oblong_cells)
+{
+  const std::vector<Hole> holes = parse_holes("circle: 5.25, 0.5, 0.2", "");
+  for (const unsigned int n : {10u, 15u, 22u})
+    {
+      const FittedPlate plate =
+        fitted_plate({0., 0.}, {10., 1.}, {{n, 10}}, holes, "'Rims' in section 'Domain'");
+      const Measured found = measured(plate, holes);
+      EXPECT_TRUE(found.is_whole);
+      EXPECT_NEAR(found.area, 10. - std::acos(-1.) * 0.04, 0.02);
+      EXPECT_GT(found.sine, 0.1);
+    }
+}
+
+
 TEST(FittedPlates, rectangles_on_lines_of_the_lattice_are_cut_out)
 {
   const std::vector<Hole> holes =
@@ -125,4 +140,6 @@ TEST(FittedPlates, holes_that_cells_are_too_large_for_are_told)
   EXPECT_NE(message("circle: 0.5, 0.5, 0.2 ; circle: 0.95, 0.5, 0.2", 8).find("circle: 0.95"),
             std::string::npos);
   EXPECT_EQ(message("circle: 0.5, 0.5, 0.2 ; circle: 0.95, 0.5, 0.2", 80), "");
+  EXPECT_NE(message("circle: 2.5, 0.5, 0.1", 10).find("outside the plate"), std::string::npos);
+  EXPECT_EQ(message("polygon: 0.35, 0.35, 0.65, 0.35, 0.35, 0.65", 16), ""); // 45 degrees
 }

@@ -27,7 +27,8 @@ namespace PeriDeal
     CoarseMesh<dim>                               coarse;
     std::map<FaceKey, dealii::types::boundary_id> sides; // of boundary faces
     std::map<FaceKey, dealii::types::manifold_id> faces; // whose new vertices lie on a manifold
-    std::map<unsigned int, dealii::types::manifold_id>                           cells;
+    std::map<unsigned int, dealii::types::manifold_id> cells;
+    /** Null: a TransfiniteInterpolationManifold, which is made anew for each mesh. */
     std::map<dealii::types::manifold_id, std::shared_ptr<dealii::Manifold<dim>>> manifolds;
 
     /** Give a mesh that has been made of `coarse` its sides and manifolds. */
