@@ -103,10 +103,7 @@ namespace PeriDeal
         if (!scene.domain.contains(p))
           entry_error(scene.output.where(entry),
                       "the point " + point_text(p) + " lies outside the body.");
-        // A mesh that is chosen follows the rims.
-        const bool is_inside = scene.general.automatic ? !scene.domain.holes.contains(p) :
-                                                         is_in_some_cell(scene.domain, p);
-        if (entry == "Probes" && !is_inside)
+        if (entry == "Probes" && !is_in_some_cell(scene.domain, p))
           entry_error(scene.output.where(entry),
                       "the point " + point_text(p) +
                         " lies in a hole. Move it into the body, or leave it out.");
@@ -180,7 +177,11 @@ namespace PeriDeal
   void Scene<dim>::parse_and_validate()
   {
     general.parse();
-    general.dimension = dim;
+    general.dimension    = dim;
+    const bool has_holes = domain.text("Shape") == "plate with hole" ||
+                           !domain.text("Holes").empty();
+    if (general.automatic && has_holes) // a mesh that is chosen follows the rims
+      domain.set("Rims", "fitted");
     domain.parse();
     const MeshGroups groups = take_groups_of_mesh(*this);
     elasticity.parse(general.physics, dim);

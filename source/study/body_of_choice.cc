@@ -69,22 +69,22 @@ namespace PeriDeal
     template <int dim>
     CellCounts cells_of_fitted_plate(const Scene<dim> &scene)
     {
-      constexpr unsigned int  most    = 64;
       const Domain<dim>      &domain  = scene.domain;
       const CrackedBox        wanted  = wanted_on_lines(scene);
       const std::vector<Hole> holes   = domain.holes.all();
-      double                  longest = 0.;
-      for (unsigned int d = 0; d < dim; ++d)
-        longest = std::max(longest, domain.upper[d] - domain.lower[d]);
+      const Tensor<1, dim>    edges   = domain.upper - domain.lower;
+      const double            longest = *std::max_element(edges.begin_raw(), edges.end_raw());
+      // Cells are at most about twice as long as wide.
+      const unsigned int n_least = std::ceil(longest / std::min(edges[0], edges[1])),
+                         first = std::max(3u, n_least), step = std::max(1u, first / 16),
+                         n_tries = 64;
       std::string reason;
-      for (unsigned int n = 3; n <= most; ++n)
+      for (unsigned int n = first; n < first + n_tries * step; n += step)
         {
           CellCounts cells;
           for (unsigned int d = 0; d < dim; ++d)
-            cells.push_back(fitting_count(
-              wanted,
-              d,
-              std::max(2l, std::lround(n * (domain.upper[d] - domain.lower[d]) / longest))));
+            cells.push_back(
+              fitting_count(wanted, d, std::max(2l, std::lround(n * edges[d] / longest))));
           try
             {
               fitted_plate({domain.lower[0], domain.lower[1]},
@@ -99,6 +99,7 @@ namespace PeriDeal
               reason = error.message();
             }
         }
+      reason = reason.substr(0, reason.find(" Choose more"));
       domain.refuse(
         true,
         "Holes",
@@ -139,8 +140,10 @@ namespace PeriDeal
     : settings(settings_of_body(original))
   {
     std::vector<Setting> once = settings;
-    if (!settings.empty())
-      once.emplace_back("Domain/Refinements", "0");
+    for (const auto &[entry, text] : {Setting("Domain/Refinements", "0"),
+                                      Setting("Domain/Coarsening", "0"),
+                                      Setting("Domain/Fine where", "auto")})
+      once.emplace_back(entry, text);
     scene = scene_variant(original, once);
     if (scene->domain.has_lattice())
       {
@@ -152,6 +155,12 @@ namespace PeriDeal
     std::tie(scene->domain.lower, scene->domain.upper) = given->box.get_boundary_points();
     cracks_on_faces = !scene->cracks.cracks.empty() && !scene->cracks.change() &&
                       all_on_faces(*scene, communicator);
+    AssertThrow(
+      !scene->deforms || scene->cracks.cracks.empty() || cracks_on_faces,
+      UserError(
+        "Entry 'Models': 'auto' does not choose for cracks across cells of elastic bodies other than a box "
+        "('Shape' and 'Holes' in section 'Domain'). Name models instead: finite elements, "
+        "peridynamics, coupled."));
   }
 
 
