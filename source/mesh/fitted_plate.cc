@@ -296,7 +296,6 @@ namespace PeriDeal
           {
             const unsigned int l = (k + 1) % n;
             made.push_back(plate.cells.size());
-            plate.rim.push_back({static_cast<unsigned int>(plate.cells.size()), 2, h});
             plate.cells.push_back({{loop[k], loop[l], first + l, first + k}});
           }
       }

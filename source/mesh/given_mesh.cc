@@ -209,22 +209,9 @@ namespace PeriDeal
     void set_sides_of_plate(const Domain<dim> &domain, Triangulation<dim> &mesh)
     {
       for (const auto &cell : mesh.active_cell_iterators())
-        for (const unsigned int f : cell->face_indices())
-          {
-            if (!cell->face(f)->at_boundary())
-              continue;
-            types::boundary_id id     = hole_boundary_id;
-            const Point<dim>   center = cell->face(f)->center();
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const double slack = 1e-8 * (domain.upper[d] - domain.lower[d]);
-                if (std::abs(center[d] - domain.lower[d]) < slack)
-                  id = 2 * d;
-                else if (std::abs(center[d] - domain.upper[d]) < slack)
-                  id = 2 * d + 1;
-              }
-            cell->face(f)->set_boundary_id(id);
-          }
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary())
+            face->set_boundary_id(side_of_box(domain, face->center()));
     }
 
 

@@ -150,24 +150,17 @@ namespace PeriDeal
     }
 
 
-    /** Side of a box on which a boundary face lies, or the hole. */
+    /** That of a lattice, or a crack that is cut into it. */
     template <int dim>
-    types::boundary_id box_side(const Domain<dim>                     &domain,
-                                const std::vector<CrackGeometry<dim>> &cut,
-                                const Point<dim>                      &center)
+    types::boundary_id side_of_lattice(const Domain<dim>                     &domain,
+                                       const std::vector<CrackGeometry<dim>> &cut,
+                                       const Point<dim>                      &center)
     {
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          const double tolerance = 1e-8 * domain.spacing()[d];
-          if (std::abs(center[d] - domain.lower[d]) < tolerance)
-            return 2 * d;
-          if (std::abs(center[d] - domain.upper[d]) < tolerance)
-            return 2 * d + 1;
-        }
-      for (const CrackGeometry<dim> &crack : cut)
-        if (crack.contains(center))
-          return crack_boundary_id;
-      return hole_boundary_id;
+      const types::boundary_id side   = side_of_box(domain, center);
+      const auto               has_it = [&](const auto &crack) { return crack.contains(center); };
+      return side == hole_boundary_id && std::any_of(cut.begin(), cut.end(), has_it) ?
+               crack_boundary_id :
+               side;
     }
 
 
@@ -300,9 +293,24 @@ namespace PeriDeal
       for (const auto &cell : mesh.cell_iterators_on_level(0))
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
-            cell->face(f)->set_boundary_id(box_side(domain, cut, cell->face(f)->center()));
+            cell->face(f)->set_boundary_id(side_of_lattice(domain, cut, cell->face(f)->center()));
     }
   } // namespace
+
+
+  template <int dim>
+  types::boundary_id side_of_box(const Domain<dim> &domain, const Point<dim> &center)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double tolerance = 1e-8 * domain.spacing()[d];
+        if (std::abs(center[d] - domain.lower[d]) < tolerance)
+          return 2 * d;
+        if (std::abs(center[d] - domain.upper[d]) < tolerance)
+          return 2 * d + 1;
+      }
+    return hole_boundary_id;
+  }
 
 
   template <int dim>
@@ -695,5 +703,6 @@ namespace PeriDeal
   PERIDEAL_INSTANTIATE_FUNCTION(cut_along_faces);
   PERIDEAL_INSTANTIATE_FUNCTION(set_material_ids);
   PERIDEAL_INSTANTIATE_FUNCTION(build_mesh);
+  PERIDEAL_INSTANTIATE_FUNCTION(side_of_box);
   PERIDEAL_INSTANTIATE_FUNCTION(require_cells_everywhere);
 } // namespace PeriDeal

@@ -75,8 +75,9 @@ namespace PeriDeal
       return Family::bonds;
     const bool whole = scene.cracks.cracks.empty() || dim == 1;
     if (body.given)
-      return whole || (body.cracks_on_faces && !scene.cracks.conduct()) ? Family::given :
-                                                                          Family::given_pairs;
+      return whole || (body.given->cracks_on_faces && !scene.cracks.conduct()) ?
+               Family::given :
+               Family::given_pairs;
     if (whole)
       return Family::whole;
     if (on_faces && !scene.cracks.conduct() && !scene.cracks.change())

@@ -6,7 +6,6 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/fitted_plate.h>
-#include <perideal/mesh/given_mesh.h>
 #include <perideal/study/cracked_box.h>
 
 #include <algorithm>
@@ -120,18 +119,6 @@ namespace PeriDeal
                   {"Domain/Rims", "fitted"}};
       return {};
     }
-
-
-    /** Whether all cracks lie on faces of the cells, so that the mesh can be cut there. */
-    template <int dim>
-    bool all_on_faces(const Scene<dim> &scene, const MPI_Comm communicator)
-    {
-      const CoarseMesh<dim> coarse = given_mesh(scene.domain, communicator).coarse;
-      for (const CrackGeometry<dim> &crack : make_crack_geometries(scene.cracks.pieces(0.)))
-        if (!lies_on_faces(coarse, crack))
-          return false;
-      return true;
-    }
   } // namespace
 
 
@@ -153,10 +140,8 @@ namespace PeriDeal
     given = std::make_unique<GivenBody<dim>>(*scene, communicator);
     sides = given->sides;
     std::tie(scene->domain.lower, scene->domain.upper) = given->box.get_boundary_points();
-    cracks_on_faces = !scene->cracks.cracks.empty() && !scene->cracks.change() &&
-                      all_on_faces(*scene, communicator);
     AssertThrow(
-      !scene->deforms || scene->cracks.cracks.empty() || cracks_on_faces,
+      !scene->deforms || scene->cracks.cracks.empty() || given->cracks_on_faces,
       UserError(
         "Entry 'Models': 'auto' does not choose for cracks across cells of elastic bodies other than a box "
         "('Shape' and 'Holes' in section 'Domain'). Name models instead: finite elements, "

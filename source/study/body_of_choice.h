@@ -27,6 +27,5 @@ namespace PeriDeal
     std::vector<Setting>            settings; // of its coarsest mesh
     std::unique_ptr<GivenBody<dim>> given;    // of a body without a lattice, else null
     SidePoints<dim>                 sides;
-    bool                            cracks_on_faces = false; // of the given mesh
   };
 } // namespace PeriDeal

@@ -7,11 +7,25 @@
 #include <perideal/mesh/body_corners.h>
 #include <perideal/mesh/given_mesh.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool all_on_faces(const CoarseMesh<dim> &mesh, const Cracks<dim> &cracks)
+    {
+      const std::vector<CrackGeometry<dim>> all = make_crack_geometries(cracks.pieces(0.));
+      return std::all_of(all.begin(), all.end(), [&](const CrackGeometry<dim> &crack) {
+        return lies_on_faces(mesh, crack);
+      });
+    }
+  } // namespace
+
 
   template <int dim>
   GivenBody<dim>::GivenBody(const Scene<dim> &scene, const MPI_Comm communicator)
@@ -34,10 +48,12 @@ namespace PeriDeal
     std::vector<CellBox> boxes;
     for (const auto &cell : mesh->active_cell_iterators())
       boxes.emplace_back(cell->bounding_box(), cell);
-    cells       = pack_rtree(boxes);
-    spacing     = std::pow(volume / mesh->n_active_cells(), 1. / dim);
-    is_round    = !given.manifolds.empty();
-    has_corners = !corners_of_body(scene, *mesh).empty();
+    cells           = pack_rtree(boxes);
+    spacing         = std::pow(volume / mesh->n_active_cells(), 1. / dim);
+    is_round        = !given.manifolds.empty();
+    has_corners     = !corners_of_body(scene, *mesh).empty();
+    cracks_on_faces = !scene.cracks.cracks.empty() && !scene.cracks.change() &&
+                      all_on_faces(given.coarse, scene.cracks);
   }
 
 

@@ -49,8 +49,9 @@ namespace PeriDeal
     dealii::BoundingBox<dim>                    box;
     SidePoints<dim>                             sides;
     double                                      spacing = 0.; // edge of a cell of the mean size
-    bool is_round    = false; // new vertices do not lie on straight lines between the old ones
-    bool has_corners = false; // corners_of_body()
+    bool is_round        = false; // new vertices do not lie on straight lines between the old ones
+    bool has_corners     = false; // corners_of_body()
+    bool cracks_on_faces = false; // all that there are, so that the mesh can be cut there
   };
 
 

@@ -13,18 +13,11 @@
 
 namespace PeriDeal
 {
-  /** Quadrilaterals, counterclockwise, and which edges of them lie on the rim of a hole. */
+  /** Quadrilaterals, counterclockwise. */
   struct FittedPlate
   {
-    /** The edge of a cell from its corner k to the next one. */
-    struct RimEdge
-    {
-      unsigned int cell, edge, hole;
-    };
-
     std::vector<dealii::Point<2>>            vertices;
     std::vector<std::array<unsigned int, 4>> cells;
-    std::vector<RimEdge>                     rim;
   };
 
   /**

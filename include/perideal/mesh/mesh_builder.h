@@ -57,6 +57,12 @@ namespace PeriDeal
   void set_material_ids(const dealii::Triangulation<dim> &mesh, const Regions &regions);
 
 
+  /** The side of the box of a body on which the middle of a face lies, else `hole`. */
+  template <int dim>
+  dealii::types::boundary_id side_of_box(const Domain<dim>        &domain,
+                                         const dealii::Point<dim> &center);
+
+
   /** A coarse mesh as plain lists. */
   template <int dim>
   struct CoarseMesh
