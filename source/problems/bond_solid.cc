@@ -472,7 +472,8 @@ namespace PeriDeal
                                                 scene.horizon() / spacing,
                                                 completes_at_surfaces<dim>(scene)) :
                              "",
-              states->brittle() ? note_on_trapping(scene, family) : "",
+              states->brittle() && !scene.material.softens() ? note_on_trapping(scene, family) : "",
+              note_on_softening(),
               note_on_critical_stretch()})
           if (!note.empty())
             list.push_back(note);
@@ -492,6 +493,26 @@ namespace PeriDeal
           return {};
         const auto [energy, of_ball] = states->breaking().energies_of_first();
         return note_on_stretch(scene, energy, of_ball);
+      }
+
+      /** Bonds that have stored much when they begin to soften. */
+      std::string note_on_softening() const
+      {
+        constexpr double much  = 1. / 40.; // a tenth of the length E G/f_t^2
+        const double     share = states->breaking().stored_at_onset();
+        if (share < much)
+          return {};
+        const std::string horizon = number_text(scene.horizon()),
+                          longest = number_text(scene.horizon() / share);
+        return share >= 1. ?
+                 "bonds break at once, and do not soften, where their horizon, " + horizon +
+                   ", is longer than " + longest +
+                   ", at which they have stored 'Fracture energy' (section 'Material') when they "
+                   "come to 'Tensile strength'. Use a shorter horizon." :
+                 "the horizon, " + horizon + ", is long for bonds that soften: they have stored " +
+                   number_text(std::round(1000. * share) / 10.) +
+                   " % of 'Fracture energy' (section 'Material') when they begin to; at " + longest +
+                   " it would be all, and they would break at once.";
       }
 
       /** Without what lies in extra layers: half of a vertex on a side of the body. */

@@ -471,8 +471,10 @@ namespace PeriDeal
     options.max_iterations   = scene.solver.most_iterations(scene.elasticity.solver);
     options.direct_up_to     = scene.solver.direct_up_to;
     options.multigrid        = scene.elasticity.multigrid();
-    options.breaks_in_motion = scene.elasticity.breaks_in_motion(); // where stretches are known
-    options.divides_steps    = !scene.warms_slowly(); // temperatures are those of their ends
+    // Where stretches are known; what softens waits for no motion.
+    options.breaks_in_motion = scene.elasticity.breaks_in_motion() && !scene.material.softens();
+    options.divides_steps    = // temperatures are those of their ends
+      !scene.warms_slowly() && !scene.material.softens();
     auto solver              = make_static_solver(scene.elasticity.solver_name(), op(), options);
     loading                  = std::make_unique<SlowLoading>(op(), std::move(solver), options);
     if (scene.guards.goes_on())

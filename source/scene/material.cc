@@ -79,9 +79,14 @@ namespace PeriDeal
       " The stretch at which bonds break follows from it. Without this and Critical stretch they do not break.";
     entry("Critical stretch") =
       "Relative extension at which a bond breaks, instead of Fracture energy" + formula;
-    declare(law.kind, "Law", "linear", {"linear", "viscoelastic", "formula"}) =
-      "Elasticity: how the force of a bond follows from its extension. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `formula`: "
-      "by a formula of your own (`Bond force`).";
+    declare(law.kind, "Law", "linear", {"linear", "viscoelastic", "softening", "formula"}) =
+      "Elasticity: how the force of a bond follows from its extension. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `softening`: bonds lose their "
+      "force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`).";
+    entry("Tensile strength") =
+      "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
+      " The area under stress over opening is Fracture energy.";
+    declare(law.softening, "Softening", "exponential", {"linear", "bilinear", "exponential"}) =
+      "With `Law = softening`: the stress over the opening. `bilinear` has its kink at a third of the strength (Petersson's, for concrete).";
     declare("Relaxation", EntryType::list, "", "1, time") =
       "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with "
       "exp(-t/time). A time is that of the section `Time`.";
@@ -166,6 +171,25 @@ namespace PeriDeal
       scatter =
         Scatter{parse_number(text("Weibull modulus"), where("Weibull modulus")),
                 parse_whole_number(text("Strength seed"), where("Strength seed"), 2147483647u)};
+  }
+
+
+  void Material::parse_softening() const
+  {
+    for (const std::string entry : {"Tensile strength", "Softening"})
+      refuse(is_given(entry) && !softens(),
+             entry,
+             "is for 'Law = softening'; 'Law' is '" + text("Law") + "'. Leave one of them out.");
+    if (!softens())
+      return;
+    refuse(!tensile_strength, "Tensile strength", "is empty, which 'Law = softening' needs.");
+    refuse(critical_stretch.has_value(),
+           "Critical stretch",
+           "is where brittle bonds break; 'Law = softening' takes 'Tensile strength' and "
+           "'Fracture energy'.");
+    refuse(!fracture_energy,
+           "Fracture energy",
+           "is empty, which 'Law = softening' needs: the area under the stress over the opening.");
   }
 
 
@@ -257,12 +281,14 @@ namespace PeriDeal
     thermal_expansion = property("Thermal expansion");
     fracture_energy   = optional_property("Fracture energy", physics);
     critical_stretch  = optional_property("Critical stretch", physics);
+    tensile_strength  = optional_property("Tensile strength", physics);
     if (fracture_energy && critical_stretch)
       error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
-    for (const std::string entry : {"Law", "Relaxation", "Bond force"})
+    for (const std::string entry : {"Law", "Relaxation", "Softening", "Bond force"})
       refuse_unless_elastic(entry, physics);
     parse_law(*this, law);
+    parse_softening();
     if (law.kind == SolidLaw::formula && fracture_energy)
       error(
         "Fracture energy",

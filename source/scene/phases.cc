@@ -255,7 +255,8 @@ namespace PeriDeal
       {"Poisson ratio", "1", false, true, false, false},
       {"Thermal expansion", "1/temperature", false, true, false, false},
       {"Fracture energy", "energy/length^2", false, true, false, true},
-      {"Critical stretch", "1", false, true, false, true}};
+      {"Critical stretch", "1", false, true, false, true},
+      {"Tensile strength", "force/length^2", false, true, false, true}};
     return entries;
   }
 

@@ -358,6 +358,10 @@ namespace PeriDeal
       "Breaking",
       "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
     scene.elasticity.refuse(
+      scene.elasticity.is_given("Breaking") && material.softens(),
+      "Breaking",
+      "is for bonds that break at once; with 'Law = softening' (section 'Material') they soften from equilibrium to equilibrium. Leave it out.");
+    scene.elasticity.refuse(
       scene.elasticity.contact_is_asked() && !bonds &&
         (none || !scene.coupling.exchanges() || scene.cracks.on_faces()),
       "Contact",
@@ -521,6 +525,14 @@ namespace PeriDeal
       kind == SolidLaw::formula && by_elements && !coupled,
       "Law",
       "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
+    material.refuse(
+      kind == SolidLaw::softening && by_elements,
+      "Law",
+      "'softening' is one of bonds, and is for 'Models = peridynamics' alone.");
+    material.refuse(
+      kind == SolidLaw::softening && !body.cracks.tips.empty(),
+      "Law",
+      "'softening' is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks'): bonds soften and break where they are stretched. Leave these out.");
     const bool is_warm = body.elasticity.computes_temperature ||
                          !is_zero(body.elasticity.temperature_change);
     material.refuse(by_elements && is_warm,

@@ -124,7 +124,16 @@ namespace PeriDeal
   {
     linear,
     viscoelastic,
+    softening,
     formula
+  };
+
+  /** SofteningCurve. */
+  enum class Softening
+  {
+    linear,
+    bilinear,
+    exponential
   };
 
   /**

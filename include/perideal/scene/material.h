@@ -36,6 +36,7 @@ namespace PeriDeal
     MaterialProperty                thermal_expansion; // strain per temperature
     std::optional<MaterialProperty> fracture_energy;   // per area; not both
     std::optional<MaterialProperty> critical_stretch;
+    std::optional<MaterialProperty> tensile_strength; // of bonds that soften
 
     /** Of the critical stretch from node to node. */
     struct Scatter
@@ -51,12 +52,19 @@ namespace PeriDeal
       SolidLaw                kind;
       std::vector<Relaxation> relaxation; // viscoelastic
       Expression              bond_force; // formula: of the stretch s and the damage
+      Softening               softening;  // softening, with Material::tensile_strength
     } law;
 
     /** Bonds may break. */
     bool breaks() const
     {
       return fracture_energy || critical_stretch;
+    }
+
+    /** They lose their force little by little. */
+    bool softens() const
+    {
+      return law.kind == SolidLaw::softening;
     }
 
     bool uniform_conductivity() const
@@ -119,6 +127,7 @@ namespace PeriDeal
                                                       const Physics      physics) const;
 
     void parse_scatter();
+    void parse_softening() const;
 
     void parse_moduli(const unsigned int dim, const PlaneState plane);
 

@@ -35,7 +35,7 @@ namespace PeriDeal
       return;
     if (bonds.sums.has_lattice())
       screen = std::make_unique<StretchScreen<dim>>(bonds.families, criterion->least_stretches());
-    if (bonds.kinematics.is_full())
+    if (bonds.kinematics.is_full() && !criterion->softens())
       watch_limits();
     loaded_side = loads.sides_nearby(bonds.families);
   }
@@ -91,13 +91,60 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::judge(const double *u, const unsigned int i, const SolidBond<dim> &bond)
   {
-    const unsigned int j = bond.neighbor;
-    if (const BondMeasure found = measure(u, i, bond); found.exceeds())
-      overstretched.push_back({bond.number,
-                               i,
-                               bonds.ends.is_fictitious(j) ? i : j,
-                               bonds.ends.n_ends(i, j),
-                               found.over_limit()});
+    const unsigned int  j     = bond.neighbor;
+    const BondMeasure   found = measure(u, i, bond);
+    const Overstretched of_bond{bond.number,
+                                i,
+                                bonds.ends.is_fictitious(j) ? i : j,
+                                bonds.ends.n_ends(i, j),
+                                found.over_limit()};
+    if (criterion->softens())
+      judge_softening(of_bond);
+    else if (found.exceeds())
+      overstretched.push_back(of_bond);
+  }
+
+
+  /**
+   * A bond that is stretched farther than ever bears less; one that has softened bears all when it
+   * is pressed, and what it did when it is pulled again.
+   */
+  template <int dim>
+  void BondBreaking<dim>::judge_softening(Overstretched bond)
+  {
+    constexpr double slack = 1e-3; // of limits
+    const auto       state = bonds.rows.softness(bond.number);
+    const double     most  = std::max(1., state.reached);
+    const bool       grows = bond.ratio > (1. + slack) * most, is_pressed = bond.ratio < -slack,
+                     has_softened = state.reached > 1.;
+    if (!grows && !(has_softened && (is_pressed ? state.lost > 0. : state.lost == 0.)))
+      return;
+    if (!grows && !is_pressed && bond.ratio < 0.)
+      return;
+    bond.ratio     = std::max(bond.ratio, most);
+    bond.integrity = is_pressed ? 1. : integrity(bond, bond.ratio);
+    overstretched.push_back(bond);
+  }
+
+
+  template <int dim>
+  double BondBreaking<dim>::integrity(const Overstretched &bond, const double ratio) const
+  {
+    const unsigned int j = bonds.rows.neighbor(bond.number);
+    return criterion->integrity(bond.node,
+                                bonds.ends.origin(j),
+                                bonds.ends.vector(bond.node, j).norm(),
+                                ratio);
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::change(const Overstretched &bond, const double t)
+  {
+    if (bond.integrity > 0.)
+      bonds.rows.weaken(bond.number, {bond.ratio, 1. - bond.integrity});
+    else
+      bonds.rows.mark(bond.number, BondState::broken, t);
   }
 
 
@@ -164,11 +211,44 @@ namespace PeriDeal
       bonds.rows.for_each(i, [&](const auto &bond) {
         if (!bonds.rows.is_whole(bond.number) || !bonds.ends.may_break(bond.neighbor))
           return;
-        if (const BondMeasure found = measure(u.begin(), i, bond); found.exceeds(most))
-          most = found.over_limit();
+        const BondMeasure found  = measure(u.begin(), i, bond);
+        const double      before = criterion->softens() ?
+                                     std::max(1., bonds.rows.softness(bond.number).reached) :
+                                     1.;
+        if (found.exceeds(most * before))
+          most = found.over_limit() / before;
       });
     u.set_ghost_state(false);
     return Utilities::MPI::max(most, bonds.families.nodes().communicator());
+  }
+
+
+  /**
+   * Bonds to extrapolated fictitious nodes of a node bear as little as that of its bonds to the
+   * nodes which these follow from that bears least.
+   */
+  template <int dim>
+  void BondBreaking<dim>::soften_dependent(const unsigned int node)
+  {
+    std::vector<std::pair<unsigned int, double>> lost;
+    bonds.rows.for_each_in_body(node, [&](const auto &bond) {
+      const double part = bonds.rows.is_whole(bond.number) ? bonds.rows.softness(bond.number).lost :
+                                                             0.;
+      if (part > 0.)
+        lost.emplace_back(bond.neighbor, part);
+    });
+    bonds.rows.for_each_beyond(node, [&](const auto &bond) {
+      if (!bonds.rows.is_whole(bond.number) || bonds.ends.may_break(bond.neighbor))
+        return;
+      double most = 0.;
+      bonds.ends.images->for_each_term(bonds.ends.image(bond.neighbor), [&](const auto &term) {
+        for (const auto &[neighbor, part] : lost)
+          if (neighbor == term.node)
+            most = std::max(most, part);
+      });
+      if (most != bonds.rows.softness(bond.number).lost)
+        bonds.rows.weaken(bond.number, {0., most});
+    });
   }
 
 
@@ -216,7 +296,8 @@ namespace PeriDeal
     find_inside(u.begin());
     find_beyond(u.begin());
     u.set_ghost_state(false);
-    if (!this->select(share))
+    // Those that soften do so a little each.
+    if (!this->select(criterion->softens() ? 0. : share))
       return {};
     for (const auto &bond : overstretched)
       losing.push_back(bond.node);
@@ -227,15 +308,22 @@ namespace PeriDeal
     change.since              = t;
     change.damage             = true;
     change.nodes              = losing;
-    unsigned long long n_ends = 0;
+    unsigned long long n_ends = 0, n_gone = 0;
     for (const auto &bond : overstretched)
       {
         n_ends += bond.n_ends;
-        bonds.rows.mark(bond.number, BondState::broken, t);
+        n_gone += bond.integrity > 0. ? 0 : bond.n_ends;
+        this->change(bond, t);
       }
     for (const unsigned int i : losing)
-      break_dependent(i, t);
-    so_far.n_broken += Utilities::MPI::sum(n_ends, bonds.families.nodes().communicator()) / 2;
+      {
+        if (n_gone > 0)
+          break_dependent(i, t);
+        if (criterion->softens())
+          soften_dependent(i);
+      }
+    n_changed = Utilities::MPI::sum(n_ends, bonds.families.nodes().communicator()) / 2;
+    so_far.n_broken += Utilities::MPI::sum(n_gone, bonds.families.nodes().communicator()) / 2;
     so_far.released += before - energy();
     return change;
   }
@@ -269,6 +357,8 @@ namespace PeriDeal
     if (criterion)
       so_far.exchange(archive);
     const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
+    if (criterion && criterion->softens())
+      exchange_histories(bonds.rows, archive, keys, BondTable<dim>::n_softness);
     if (!archive.loads())
       return;
     const auto take = [&](const bool first) {
@@ -283,6 +373,20 @@ namespace PeriDeal
                             bonds.families.nodes().communicator()) > 0)
       at_first();
     take(false);
+    if (criterion && criterion->softens())
+      take_softness();
+  }
+
+
+  /** Histories are those of an archive, bonds are as they were at first. */
+  template <int dim>
+  void BondBreaking<dim>::take_softness()
+  {
+    for (BondRows<dim> *rows : {&bonds.rows.body, &bonds.rows.beyond})
+      for (std::size_t k = 0; k < rows->size(); ++k)
+        if (const double lost = rows->nonlinear.history[BondTable<dim>::n_softness * k + 1];
+            lost > 0. && rows->state.is_whole(k))
+          rows->weaken(k, 1. - lost);
   }
 
 
@@ -291,6 +395,17 @@ namespace PeriDeal
   {
     if (bonds.law.any() && bonds.law->knows_damage())
       bonds.forces.damage = this->damage_with_ghosts();
+  }
+
+
+  /** 1 but for bonds that have softened, pressed or not. */
+  template <int dim>
+  double BondBreaking<dim>::left_of(const unsigned int node, const std::size_t number) const
+  {
+    if (!criterion || !criterion->softens())
+      return 1.;
+    const double reached = bonds.rows.softness(number).reached;
+    return reached > 1. ? integrity({number, node, node, 0, reached}, reached) : 1.;
   }
 
 
@@ -322,14 +437,16 @@ namespace PeriDeal
                 continue;
               }
             all += volume;
-            left += rows.state.is_whole(k) ? bond.kept * volume : 0.;
+            left += rows.state.is_whole(k) ? bond.kept * volume * left_of(i, k) : 0.;
             ++k;
           }
         bonds.rows.for_each_beyond(i, [&](const auto &bond) {
           if (!bonds.ends.may_break(bond.neighbor))
             return;
           all += bonds.ends.volume(bond.neighbor);
-          left += bonds.rows.is_whole(bond.number) ? bonds.ends.volume(bond.neighbor) : 0.;
+          left += bonds.rows.is_whole(bond.number) ?
+                    bonds.ends.volume(bond.neighbor) * left_of(i, bond.number) :
+                    0.;
         });
         result[i] = all > 0. ? 1. - left / all : 0.;
       }

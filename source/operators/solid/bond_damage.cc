@@ -7,6 +7,7 @@
 #include <perideal/base/point_order.h>
 #include <perideal/operators/solid/bond_damage.h>
 #include <perideal/operators/solid/bond_strengths.h>
+#include <perideal/operators/solid/softening_strengths.h>
 
 #include <algorithm>
 #include <utility>
@@ -21,6 +22,8 @@ namespace PeriDeal
     template <int dim>
     std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds)
     {
+      if (bonds.material.softens())
+        return std::make_unique<SofteningStrengths<dim>>(bonds);
       if (bonds.material.breaks())
         return std::make_unique<BondStrengths<dim>>(bonds);
       return nullptr;
@@ -31,7 +34,7 @@ namespace PeriDeal
   template <int dim>
   BondDamage<dim>::BondDamage(const Families<dim>                  &families,
                               const BodyParameters<dim>            &body,
-                              std::function<double(unsigned int)> &&crossing_energy)
+                              std::function<CrossingEnergy(unsigned int)> &&crossing_energy)
     : families(families)
     , body(body)
     , criterion(criterion_of<dim>({families, body.material, std::move(crossing_energy)}))

@@ -260,6 +260,19 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void BondTable<dim>::weaken(const std::size_t number, const Softness &now)
+  {
+    BondRows<dim>    &rows   = (number & of_beyond) != 0 ? beyond : body;
+    const std::size_t k      = place(number);
+    const double      before = softness(number).lost;
+    if (now.lost != before)
+      rows.weaken(k, (1. - now.lost) / (1. - before));
+    rows.nonlinear.history[n_softness * k]     = now.reached;
+    rows.nonlinear.history[n_softness * k + 1] = now.lost;
+  }
+
+
   namespace
   {
     template <int dim, typename FirstOf>

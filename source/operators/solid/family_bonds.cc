@@ -39,7 +39,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::function<double(unsigned int)> FamilyBonds<dim>::crossing_energies(
+  std::function<CrossingEnergy(unsigned int)> FamilyBonds<dim>::crossing_energies(
     const BodyParameters<dim> &) const
   {
     return PeriDeal::crossing_energies(

@@ -43,6 +43,7 @@ namespace PeriDeal
   NodeLaws<dim>::NodeLaws(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : weighted(nodes.partitioner())
     , volumetric(!body.elasticity.is_bond_based() && dim > 1)
+    , counts_cut(body.material.softens())
     , nodes(nodes)
     , horizon(body.horizon())
   {
@@ -78,15 +79,17 @@ namespace PeriDeal
     SymmetricTensor<2, dim> shape;
     double                  q = 0.;
     for (const auto &bond : family)
-      if (const double weight = bond.kept * bond.weight; weight != 0.)
-        {
-          const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
-          q += weight * xi.norm_square() / nodes.volume(i);
-          shape += weight * symmetrize(outer_product(xi, xi));
-        }
+      {
+        const double weight = bond.kept * bond.weight;
+        if (weight == 0. && !counts_cut)
+          continue;
+        const Tensor<1, dim> xi = families.neighbors().bond_vector(i, bond.neighbor);
+        q += (counts_cut ? bond.weight : weight) * xi.norm_square() / nodes.volume(i);
+        shape += weight * symmetrize(outer_product(xi, xi));
+      }
     if (!message.empty())
       return q;
-    if (!(q > 0.))
+    if (!(q > 0.) || !(trace(shape) > 0.))
       message =
         "The node at " + place_text(nodes.position(i)) + " is isolated: no bond of it is left. ";
     else if (smallest_eigenvalue(shape) < 1e-9 * trace(shape))

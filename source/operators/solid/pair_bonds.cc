@@ -23,13 +23,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::function<double(unsigned int)> PairBonds<dim>::crossing_energies(
+  std::function<CrossingEnergy(unsigned int)> PairBonds<dim>::crossing_energies(
     const BodyParameters<dim> &of_body) const
   {
     return [law       = ElasticBonds<dim>::stiffness(of_body),
             of_square = ElasticBonds<dim>::energy_per_square(of_lattice),
             this](const unsigned int i) {
-      return law.at_first(this->families.nodes().position(i)) * of_square;
+      CrossingEnergy energy;
+      energy.extensions = law.at_first(this->families.nodes().position(i)) * of_square;
+      return energy;
     };
   }
 

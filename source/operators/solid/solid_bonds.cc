@@ -60,6 +60,7 @@ namespace PeriDeal
       return;
     rows.go_on_beyond(search().on_lattice(sides, completes),
                       !body.elasticity.has_full_kinematics() && !law.any() &&
+                        !body.material.softens() &&
                         !families.cracks().history().changes_ever());
     // The lattice knows what is complete to the last bit.
     const double complete = rows.complete_weighted;
@@ -105,6 +106,7 @@ namespace PeriDeal
     , sums(families, ends, rows, laws)
     , kinematics(families, ends, rows, thermal, body.elasticity.has_full_kinematics())
     , forces(families, ends, rows, laws, law, kinematics)
+    , soften(body.material.softens())
     , weights_follow(body.elasticity.micromodulus != Micromodulus::constant)
   {
     complete_families(body);
@@ -113,7 +115,8 @@ namespace PeriDeal
     laws.weighted.update_ghost_values();
     if (body.peridynamics.corrects_elastic_bonds())
       correct_surface(body);
-    rows.find_springs(body.elasticity.has_full_kinematics(), law.n_history());
+    rows.find_springs(body.elasticity.has_full_kinematics(),
+                      soften ? BondTable<dim>::n_softness : law.n_history());
     sums.take_lattice();
   }
 

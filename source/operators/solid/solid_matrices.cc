@@ -21,6 +21,7 @@ namespace PeriDeal
   {
     std::vector<std::size_t>  first{0};
     std::vector<unsigned int> near;
+    std::vector<double>       left;    // of these bonds, where they soften; empty: all
     std::vector<bool>         damaged; // nodes that have lost some
     Vector                    sums;    // of V x^2 of all of them, as q; ghosts up to date
   };
@@ -66,10 +67,17 @@ namespace PeriDeal
               return;
             // As q, that of the body before bonds broke.
             found.sums.local_element(i) += nodes.volume(bond.neighbor) * xi.norm_square();
-            if (bonds.rows.is_whole(bond.number))
-              found.near.push_back(bond.neighbor);
-            else
-              found.damaged[i] = true;
+            if (!bonds.rows.is_whole(bond.number))
+              {
+                found.damaged[i] = true;
+                return;
+              }
+            found.near.push_back(bond.neighbor);
+            if (!bonds.soften)
+              return;
+            const double lost = bonds.rows.softness(bond.number).lost;
+            found.left.push_back(1. - lost);
+            found.damaged[i] = found.damaged[i] || lost > 0.5;
           };
           if (bonds.rows.is_on_lattice(i))
             bonds.rows.for_each_of(i, close, add_near);
@@ -149,7 +157,8 @@ namespace PeriDeal
           {
             const unsigned int   j      = found.near[n];
             const Tensor<1, dim> xi     = families.neighbors().bond_vector(i, j);
-            const double         spring = nodes.volume(i) * nodes.volume(j) *
+            const double         spring = (found.left.empty() ? 1. : found.left[n]) *
+                                  nodes.volume(i) * nodes.volume(j) *
                                   (extension[i] / found.sums.local_element(i) +
                                    extension[j] / found.sums.local_element(j)) /
                                   xi.norm_square();

@@ -543,7 +543,7 @@ namespace PeriDeal
     if (weakens)
       breakage.add_released(stored - solid.forces.energy_of(all, u));
     breakage.add_released(contact->change(change->nodes, u));
-    return this->n_broken_bonds() - before;
+    return breakage.stored_at_onset() > 0. ? breakage.n_last() : this->n_broken_bonds() - before;
   }
 
 

@@ -50,6 +50,18 @@ namespace PeriDeal
                                               const double                   share,
                                               const std::function<double()> &energy);
 
+    /** How many bonds the last break_bonds() that found any has changed, of all processes. */
+    unsigned long long n_last() const
+    {
+      return n_changed;
+    }
+
+    /** Bonds soften: the largest part of the fracture energy that they store before; else 0. */
+    double stored_at_onset() const
+    {
+      return criterion ? criterion->stored_at_onset() : 0.;
+    }
+
     /** The owned nodes that lose a bond in this break_bonds(), or have done so in the last one. */
     const std::vector<unsigned int> &nodes_at_work() const
     {
@@ -101,6 +113,7 @@ namespace PeriDeal
     }
 
   private:
+    using typename BondDamage<dim>::Overstretched;
     using BondDamage<dim>::criterion;
     using BondDamage<dim>::so_far;
     using BondDamage<dim>::overstretched;
@@ -111,12 +124,19 @@ namespace PeriDeal
                         const unsigned int    i,
                         const SolidBond<dim> &bond) const; // e times W x
     void        judge(const double *u, const unsigned int i, const SolidBond<dim> &bond);
+    void        judge_softening(Overstretched bond);
+    double      integrity(const Overstretched &bond, const double ratio) const;
+    void        change(const Overstretched &bond, const double t);
+    double      left_of(const unsigned int node, const std::size_t number) const;
+    void        take_softness();
+    void        soften_dependent(const unsigned int node);
     void        find_inside(const double *u);
     void        find_beyond(const double *u);
     void        break_dependent(const unsigned int node, const double t);
 
     SolidBonds<dim>                    &bonds;
     const bool                          changes; // some bond may break, or a growing crack cut it
+    unsigned long long                  n_changed = 0;
     std::vector<unsigned int>           losing;  // bonds, in ascending order
     std::unique_ptr<StretchScreen<dim>> screen;  // null: all bonds are looked at
   };

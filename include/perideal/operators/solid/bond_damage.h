@@ -63,8 +63,9 @@ namespace PeriDeal
     {
       std::size_t  number; // of who asks
       unsigned int node, neighbor;
-      unsigned int n_ends; // so many are counted here
-      double       ratio;  // of its measure to the limit
+      unsigned int n_ends;         // so many are counted here
+      double       ratio;          // of its measure to the limit
+      double       integrity = 0.; // what it bears from now on (DamageCriterion)
     };
 
     /**
@@ -73,7 +74,7 @@ namespace PeriDeal
      */
     BondDamage(const Families<dim>                  &families,
                const BodyParameters<dim>            &body,
-               std::function<double(unsigned int)> &&crossing_energy);
+               std::function<CrossingEnergy(unsigned int)> &&crossing_energy);
 
     /**
      * Leave what breaks now in BondDamage::overstretched, and keep the places. Returns whether

@@ -61,6 +61,18 @@ namespace PeriDeal
         nonlinear.lengths[k] = nonlinear.across[k] = 0.;
     }
 
+    /** A bond bears this times what it has borne. Rows are not packed. */
+    void weaken(const std::size_t k, const double factor)
+    {
+      moments[k] *= factor;
+      springs[k] /= factor;
+      if (!nonlinear.lengths.empty())
+        {
+          nonlinear.lengths[k] *= factor;
+          nonlinear.across[k] *= factor;
+        }
+    }
+
     /** W x of all bonds of the undeformed body, which full kinematics need. */
     void keep_lengths()
     {

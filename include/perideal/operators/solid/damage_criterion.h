@@ -28,20 +28,37 @@ namespace PeriDeal
   };
 
 
+  /**
+   * What a plane at a node cuts, all of it stretched by s while all else is at rest: energies per
+   * area over s^2, the stress across the plane over s.
+   */
+  struct CrossingEnergy
+  {
+    double total() const
+    {
+      return extensions + dilatations;
+    }
+
+    double extensions = 0., dilatations = 0.;
+    double over_lengths = 0.; // of the extensions, that of each bond over its length
+    double stress       = 0.;
+  };
+
+
   /** The bonds that a criterion is for; all of it outlives the criterion. */
   template <int dim>
   struct BreakableBonds
   {
     const Families<dim> &families;
     const Material      &material;
-    /** Energy per area of what a plane at an owned node cuts, all stretched by s, over s^2. */
-    std::function<double(unsigned int)> crossing_energy;
+    std::function<CrossingEnergy(unsigned int)> crossing_energy; // of an owned node
   };
 
 
   /**
-   * When a bond of a solid breaks for good: its measure is above its limit. The same for
-   * peridynamics alone (BondBreaking) and for zones beside elements (ZoneBreaking). Not collective.
+   * When a bond of a solid breaks for good, or begins to soften: its measure is above its limit. The
+   * same for peridynamics alone (BondBreaking) and for zones beside elements (ZoneBreaking), in
+   * which bonds break at once. Not collective.
    */
   template <int dim>
   class DamageCriterion
@@ -67,6 +84,33 @@ namespace PeriDeal
      * Minus infinity: not known, all bonds are looked at, and no zone follows.
      */
     virtual const std::vector<double> &least_stretches() const = 0;
+
+    /** Bonds go on beyond their limit, and integrity() is to be asked. */
+    virtual bool softens() const
+    {
+      return false;
+    }
+
+    /**
+     * What a bond bears, by what it would without damage, that has been at @p ratio times its limit
+     * at most, above 1; to the last bit the same from both ends. 0: it is broken.
+     */
+    virtual double integrity(const unsigned int /*i*/,
+                             const unsigned int /*j*/,
+                             const double /*length*/,
+                             const double /*ratio*/) const
+    {
+      return 0.;
+    }
+
+    /**
+     * The largest part of the fracture energy that bonds have stored when they begin to soften;
+     * from 1 on some break at once. In proportion to the horizon.
+     */
+    virtual double stored_at_onset() const
+    {
+      return 0.;
+    }
 
     /** Critical stretches of owned nodes and ghosts, as they are reported. */
     virtual const std::vector<double> &of_nodes() const = 0;

@@ -27,7 +27,7 @@ namespace PeriDeal
     /** Both have to outlive this object. */
     FamilyBonds(Coupling<dim> &coupling, const BodyParameters<dim> &body, const NodalLaw *law);
 
-    std::function<double(unsigned int)> crossing_energies(
+    std::function<CrossingEnergy(unsigned int)> crossing_energies(
       const BodyParameters<dim> &of_body) const override;
     void set_rows(const std::vector<unsigned int> &of_nodes,
                   const CrackSideFactors          &factors) override;

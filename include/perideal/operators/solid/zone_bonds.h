@@ -6,6 +6,7 @@
 #include <perideal/laws/linear_peridynamic_solid.h>
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/parts/crack_side_factors.h>
+#include <perideal/operators/solid/damage_criterion.h>
 #include <perideal/operators/solid/nodal_law.h>
 
 #include <array>
@@ -50,7 +51,7 @@ namespace PeriDeal
     virtual ~ZoneBonds() = default;
 
     /** BreakableBonds::crossing_energy. */
-    virtual std::function<double(unsigned int)> crossing_energies(
+    virtual std::function<CrossingEnergy(unsigned int)> crossing_energies(
       const BodyParameters<dim> &body) const = 0;
 
     /**

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/base/mpi.h>
+
+#include <perideal/base/instantiate.h>
+#include <perideal/base/place_text.h>
+#include <perideal/base/types.h>
+#include <perideal/base/user_error.h>
+#include <perideal/laws/gauss_rule.h>
+#include <perideal/operators/solid/softening_strengths.h>
+#include <perideal/operators/solid/weibull_field.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <tuple>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The integral of T(z(s))^2/s ds from s_0 on, with z = (s/s_0 - 1)/a. */
+    double integral_over_stretches(const SofteningCurve &curve, const double a)
+    {
+      constexpr unsigned int n_parts = 16;
+      static const GaussRule rule(5);
+      const double           all = std::log1p(a * SofteningCurve::longest); // of log(s/s_0)
+      double                 sum = 0.;
+      for (unsigned int k = 0; k < n_parts; ++k)
+        sum += rule.integrate(all * k / n_parts, all * (k + 1) / n_parts, [&](const double v) {
+          const double value = curve(std::expm1(v) / a);
+          return value * value;
+        });
+      return sum;
+    }
+  } // namespace
+
+
+  template <int dim>
+  std::pair<double, double> SofteningStrengths<dim>::of_node(const CrossingEnergy &crossing,
+                                                             const double          strength,
+                                                             const double          energy)
+  {
+    constexpr unsigned int n_rounds = 20; // the integral goes with the logarithm of w
+    const double           onset    = strength / crossing.stress;
+    const double           at_onset = onset * onset * crossing.total();
+    stored                          = std::max(stored, at_onset / energy);
+    if (at_onset >= energy)
+      return {std::sqrt(energy / crossing.total()), 0.};
+    const double length = crossing.extensions / crossing.over_lengths,
+                 factor = 2. * onset * crossing.over_lengths;
+    double opening      = (energy - at_onset) / factor;
+    for (unsigned int k = 0; k < n_rounds && crossing.dilatations != 0.; ++k)
+      opening = std::max(1e-3 * opening,
+                         (energy - at_onset -
+                          2. * onset * onset * crossing.dilatations *
+                            integral_over_stretches(curve, opening / (onset * length))) /
+                           factor);
+    return {onset, opening};
+  }
+
+
+  template <int dim>
+  SofteningStrengths<dim>::SofteningStrengths(const BreakableBonds<dim> &bonds)
+    : curve(bonds.material.law.softening)
+  {
+    const Nodes<dim>                 &places   = bonds.families.nodes();
+    const Material                   &material = bonds.material;
+    std::string                       message;
+    Vector                            limits(places.partitioner()), widths(places.partitioner());
+    std::optional<WeibullField<dim>>  field;
+    const auto value = [&](const MaterialProperty &property,
+                           const std::string      &entry,
+                           const Point<dim>       &p) {
+      const double found = property.value(p);
+      if (message.empty() && !(found > 0.))
+        message =
+          "'" + entry + "' in section 'Material' is not positive at " + place_text(p) + ".";
+      return found;
+    };
+    if (material.scatter)
+      field.emplace(places, material.scatter->modulus, material.scatter->seed);
+    for (unsigned int i = 0; i < places.n_owned(); ++i)
+      {
+        const Point<dim> &p        = places.position(i);
+        const double      strength = value(*material.tensile_strength, "Tensile strength", p) *
+                                (field ? field->factor(p) : 1.),
+                     energy = value(*material.fracture_energy, "Fracture energy", p);
+        if (message.empty())
+          std::tie(limits.local_element(i), widths.local_element(i)) =
+            of_node(bonds.crossing_energy(i), strength, energy);
+      }
+    throw_on_all_if_any(places.communicator(), message);
+    limits.update_ghost_values();
+    widths.update_ghost_values();
+    onsets.assign(limits.begin(), limits.begin() + places.n_local());
+    openings.assign(widths.begin(), widths.begin() + places.n_local());
+    stored = Utilities::MPI::max(stored, places.communicator());
+  }
+
+
+  PERIDEAL_INSTANTIATE_CLASS(class SofteningStrengths);
+} // namespace PeriDeal
