@@ -511,8 +511,8 @@ namespace PeriDeal
                    "come to 'Tensile strength'. Use a shorter horizon." :
                  "the horizon, " + horizon + ", is long for bonds that soften: they have stored " +
                    number_text(std::round(1000. * share) / 10.) +
-                   " % of 'Fracture energy' (section 'Material') when they begin to; at " + longest +
-                   " it would be all, and they would break at once.";
+                   " % of 'Fracture energy' (section 'Material') when they begin to; at " +
+                   longest + " it would be all, and they would break at once.";
       }
 
       /** Without what lies in extra layers: half of a vertex on a side of the body. */

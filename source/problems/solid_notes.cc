@@ -673,7 +673,8 @@ namespace PeriDeal
     kept["first broken bonds"] = t;
     std::ostringstream line;
     line.precision(4);
-    line << "  " << run.name() << ": the first bond broke at (";
+    line << "  " << run.name() << ": the first bond "
+         << (run.scene.material.softens() ? "began to soften" : "broke") << " at (";
     for (unsigned int d = 0; d < dim; ++d)
       line << (d > 0 ? ", " : "") << places.first[d];
     line << ")" << (run.stepper ? ", by t = " : " at t = ") << t;

@@ -467,16 +467,16 @@ namespace PeriDeal
   void SolidProblem<dim>::make_loading()
   {
     StaticOptions options;
-    options.tolerance        = scene.solver.tolerance;
-    options.max_iterations   = scene.solver.most_iterations(scene.elasticity.solver);
-    options.direct_up_to     = scene.solver.direct_up_to;
-    options.multigrid        = scene.elasticity.multigrid();
+    options.tolerance      = scene.solver.tolerance;
+    options.max_iterations = scene.solver.most_iterations(scene.elasticity.solver);
+    options.direct_up_to   = scene.solver.direct_up_to;
+    options.multigrid      = scene.elasticity.multigrid();
     // Where stretches are known; what softens waits for no motion.
     options.breaks_in_motion = scene.elasticity.breaks_in_motion() && !scene.material.softens();
     options.divides_steps    = // temperatures are those of their ends
       !scene.warms_slowly() && !scene.material.softens();
-    auto solver              = make_static_solver(scene.elasticity.solver_name(), op(), options);
-    loading                  = std::make_unique<SlowLoading>(op(), std::move(solver), options);
+    auto solver = make_static_solver(scene.elasticity.solver_name(), op(), options);
+    loading     = std::make_unique<SlowLoading>(op(), std::move(solver), options);
     if (scene.guards.goes_on())
       loading->findings().let_wait();
     if (heat == nullptr || !scene.elasticity.absolute_reference)

@@ -525,10 +525,9 @@ namespace PeriDeal
       kind == SolidLaw::formula && by_elements && !coupled,
       "Law",
       "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
-    material.refuse(
-      kind == SolidLaw::softening && by_elements,
-      "Law",
-      "'softening' is one of bonds, and is for 'Models = peridynamics' alone.");
+    material.refuse(kind == SolidLaw::softening && by_elements,
+                    "Law",
+                    "'softening' is one of bonds, and is for 'Models = peridynamics' alone.");
     material.refuse(
       kind == SolidLaw::softening && !body.cracks.tips.empty(),
       "Law",

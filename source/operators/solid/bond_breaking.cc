@@ -115,8 +115,8 @@ namespace PeriDeal
     constexpr double slack = 1e-3; // of limits
     const auto       state = bonds.rows.softness(bond.number);
     const double     most  = std::max(1., state.reached);
-    const bool       grows = bond.ratio > (1. + slack) * most, is_pressed = bond.ratio < -slack,
-                     has_softened = state.reached > 1.;
+    const bool       grows = bond.ratio > (1. + slack) * most,
+               is_pressed  = bond.ratio<-slack, has_softened = state.reached> 1.;
     if (!grows && !(has_softened && (is_pressed ? state.lost > 0. : state.lost == 0.)))
       return;
     if (!grows && !is_pressed && bond.ratio < 0.)
@@ -211,10 +211,9 @@ namespace PeriDeal
       bonds.rows.for_each(i, [&](const auto &bond) {
         if (!bonds.rows.is_whole(bond.number) || !bonds.ends.may_break(bond.neighbor))
           return;
-        const BondMeasure found  = measure(u.begin(), i, bond);
-        const double      before = criterion->softens() ?
-                                     std::max(1., bonds.rows.softness(bond.number).reached) :
-                                     1.;
+        const BondMeasure found = measure(u.begin(), i, bond);
+        const double      before =
+          criterion->softens() ? std::max(1., bonds.rows.softness(bond.number).reached) : 1.;
         if (found.exceeds(most * before))
           most = found.over_limit() / before;
       });

@@ -25,7 +25,7 @@ namespace PeriDeal
    */
   struct CrossingSums
   {
-    double bonds = 0.;        // sum over half the family of omega f V xi_n x^2, over q
+    double bonds        = 0.; // sum over half the family of omega f V xi_n x^2, over q
     double over_lengths = 0.; // the same with x
     // h_n times the sum over the layers of nodes on one side of (sum over what crosses of
     // omega f V x^2, over q)^2
@@ -100,9 +100,9 @@ namespace PeriDeal
                                  std::vector<typename Families<dim>::Member> &family)
   {
     bonds.members_of(node, family);
-    std::vector<std::array<double, 3>>     crossing(family.size()); // distance, share, over x^2
-    CrossingSums                           sums;
-    double                                 q = 0.;
+    std::vector<std::array<double, 3>> crossing(family.size()); // distance, share, over x^2
+    CrossingSums                       sums;
+    double                             q = 0.;
     for (const auto &bond : family)
       q += bond.weight * bonds.neighbors().bond_vector(node, bond.neighbor).norm_square();
     for (unsigned int d = 0; d < dim; ++d)
@@ -141,8 +141,8 @@ namespace PeriDeal
    */
   template <int dim, typename LawOf>
   std::function<CrossingEnergy(unsigned int)> crossing_energies(const Families<dim> &bonds,
-                                                        const LawOf         &law_of,
-                                                        const bool           volumetric)
+                                                                const LawOf         &law_of,
+                                                                const bool           volumetric)
   {
     const bool         on_lattice = bonds.nodes().lattice().has_value();
     const CrossingSums of_lattice = on_lattice ? crossing_sums(bonds) : CrossingSums();
@@ -150,14 +150,13 @@ namespace PeriDeal
     return [=, &bonds](const unsigned int i) mutable {
       const StateLaw     law  = law_of(i);
       const CrossingSums sums = on_lattice ? of_lattice : own_crossing_sums(bonds, i, family);
-      const double       volumetric_part =
-        volumetric ? law.volumetric * law.dilatation : 0.;
-      CrossingEnergy energy;
-      energy.extensions    = law.extension * sums.bonds;
-      energy.dilatations   = volumetric_part * sums.dilatations;
-      energy.over_lengths  = law.extension * sums.over_lengths;
-      energy.stress        = 2. * (law.extension * sums.stress +
-                            volumetric_part * sums.stress_of_dilatations);
+      const double       volumetric_part = volumetric ? law.volumetric * law.dilatation : 0.;
+      CrossingEnergy     energy;
+      energy.extensions            = law.extension * sums.bonds;
+      energy.dilatations           = volumetric_part * sums.dilatations;
+      energy.over_lengths          = law.extension * sums.over_lengths;
+      energy.stress                = 2. * law.extension * sums.stress;
+      energy.stress_of_dilatations = 2. * volumetric_part * sums.stress_of_dilatations;
       return energy;
     };
   }

@@ -46,9 +46,12 @@ namespace PeriDeal
                                                              const double          energy)
   {
     constexpr unsigned int n_rounds = 20; // the integral goes with the logarithm of w
-    const double           onset    = strength / crossing.stress;
-    const double           at_onset = onset * onset * crossing.total();
-    stored                          = std::max(stored, at_onset / energy);
+    // What dilatations bear fades with 1 - d, which falls much sooner than T: where it is against
+    // the extensions, the largest stress is that of these; else half of it is left.
+    const double left     = 0.5 * std::max(0., crossing.stress_of_dilatations);
+    const double onset    = strength / (crossing.stress + left);
+    const double at_onset = onset * onset * crossing.total();
+    stored                = std::max(stored, at_onset / energy);
     if (at_onset >= energy)
       return {std::sqrt(energy / crossing.total()), 0.};
     const double length = crossing.extensions / crossing.over_lengths,
@@ -68,18 +71,17 @@ namespace PeriDeal
   SofteningStrengths<dim>::SofteningStrengths(const BreakableBonds<dim> &bonds)
     : curve(bonds.material.law.softening)
   {
-    const Nodes<dim>                 &places   = bonds.families.nodes();
-    const Material                   &material = bonds.material;
-    std::string                       message;
-    Vector                            limits(places.partitioner()), widths(places.partitioner());
-    std::optional<WeibullField<dim>>  field;
-    const auto value = [&](const MaterialProperty &property,
+    const Nodes<dim>                &places   = bonds.families.nodes();
+    const Material                  &material = bonds.material;
+    std::string                      message;
+    Vector                           limits(places.partitioner()), widths(places.partitioner());
+    std::optional<WeibullField<dim>> field;
+    const auto                       value = [&](const MaterialProperty &property,
                            const std::string      &entry,
                            const Point<dim>       &p) {
       const double found = property.value(p);
       if (message.empty() && !(found > 0.))
-        message =
-          "'" + entry + "' in section 'Material' is not positive at " + place_text(p) + ".";
+        message = "'" + entry + "' in section 'Material' is not positive at " + place_text(p) + ".";
       return found;
     };
     if (material.scatter)

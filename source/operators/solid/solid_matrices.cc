@@ -155,10 +155,10 @@ namespace PeriDeal
         };
         for (std::size_t n = found.first[i]; n < found.first[i + 1]; ++n)
           {
-            const unsigned int   j      = found.near[n];
-            const Tensor<1, dim> xi     = families.neighbors().bond_vector(i, j);
-            const double         spring = (found.left.empty() ? 1. : found.left[n]) *
-                                  nodes.volume(i) * nodes.volume(j) *
+            const unsigned int   j  = found.near[n];
+            const Tensor<1, dim> xi = families.neighbors().bond_vector(i, j);
+            const double spring     = (found.left.empty() ? 1. : found.left[n]) * nodes.volume(i) *
+                                  nodes.volume(j) *
                                   (extension[i] / found.sums.local_element(i) +
                                    extension[j] / found.sums.local_element(j)) /
                                   xi.norm_square();

@@ -72,8 +72,8 @@ namespace PeriDeal
      * All have to outlive this object. Collective. Throws UserError.
      * @param crossing_energy as in BreakableBonds
      */
-    BondDamage(const Families<dim>                  &families,
-               const BodyParameters<dim>            &body,
+    BondDamage(const Families<dim>                          &families,
+               const BodyParameters<dim>                    &body,
                std::function<CrossingEnergy(unsigned int)> &&crossing_energy);
 
     /**

@@ -41,7 +41,7 @@ namespace PeriDeal
 
     double extensions = 0., dilatations = 0.;
     double over_lengths = 0.; // of the extensions, that of each bond over its length
-    double stress       = 0.;
+    double stress = 0., stress_of_dilatations = 0.;
   };
 
 
@@ -49,8 +49,8 @@ namespace PeriDeal
   template <int dim>
   struct BreakableBonds
   {
-    const Families<dim> &families;
-    const Material      &material;
+    const Families<dim>                        &families;
+    const Material                             &material;
     std::function<CrossingEnergy(unsigned int)> crossing_energy; // of an owned node
   };
 

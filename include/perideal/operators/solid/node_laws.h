@@ -75,8 +75,8 @@ namespace PeriDeal
       return laws.capacity() * sizeof(StateLaw);
     }
 
-    Vector         weighted;               // q_i; ghosts up to date
-    const bool     volumetric;             // there are dilatations
+    Vector         weighted;   // q_i; ghosts up to date
+    const bool     volumetric; // there are dilatations
     const bool     counts_cut; // q is that of the body before cracks cut it, as where bonds soften
     mutable double slope          = 1.;    // of a linear BondLaw, in its step
     bool           several_phases = false; // nodes differ in b

@@ -13,7 +13,8 @@ namespace PeriDeal
 {
   /**
    * Bonds that soften (Law = softening): all that crosses a row begins to at the stretch s_0 at
-   * which it bears the tensile strength, s_0 = f_t/stress, and then bears (1 - d) s = s_0 T(z),
+   * which it bears the tensile strength, s_0 = f_t/(stress + max(0, stress_of_dilatations)/2), in
+   * plane stress f_t (1 - nu)/E of bonds' own nu, and then bears (1 - d) s = s_0 T(z),
    * z = (s - s_0) x/w, T that of SofteningCurve. z goes with the opening, so that the stress over
    * the opening of the row is T itself. w is such that the row dissipates the fracture energy, with
    * the symbols of CrossingEnergy and l their mean length,
@@ -84,8 +85,9 @@ namespace PeriDeal
     }
 
     /** s_0 and w, 0: brittle. @param strength, @param energy the fracture energy, of a node */
-    std::pair<double, double>
-    of_node(const CrossingEnergy &crossing, const double strength, const double energy);
+    std::pair<double, double> of_node(const CrossingEnergy &crossing,
+                                      const double          strength,
+                                      const double          energy);
 
     const SofteningCurve curve;
     std::vector<double>  onsets, openings; // s_0 and w of owned nodes and ghosts

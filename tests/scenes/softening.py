@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Bonds that soften: half-notched beams against an independent cohesive model, stopped and resumed, on several processes, in motion, and what is refused.
+
+    softening.py beams      largest forces, energies, another step
+    softening.py resume     a run that stops and goes on; 2 processes; full kinematics
+    softening.py refusals   entries that do not go together
+"""
+
+from scene_test import PD, Comparison, check, check_less, check_message, run_parts, run_scene, scene_text
+
+BEAM = "prm/fracture/softening_beam.prm"
+THICKNESS = 0.05
+
+# Largest forces in kN (thickness 50 mm) of half a beam of bilinear elements whose middle plane opens by the same curve, of this depth in m: E = 37 GPa, f_t = 3.9 MPa,
+# G = 143.2 J/m^2, span 2.5 depths.
+COHESIVE = {(0.05, "exponential"): 1.237, (0.1, "exponential"): 2.189, (0.05, "linear"): 1.351}
+
+
+def beam(depth, high, **more):
+    """Overrides for a beam of this depth, so many cells high: nodes are where its feet are if 1.25 high - 0.5 is a whole number."""
+    h = depth / high
+    n = 2 * round(1.8 * high)
+    foot, load = 0.55 * h, max(0.04 * depth, 1.1 * h)
+    overrides = {
+        "Domain/Lower corner": f"{-0.5 * n * h}, 0", "Domain/Upper corner": f"{0.5 * n * h}, {depth}", "Domain/Cells": f"{n}, {high}",
+        "Boundary conditions/Parts": f"load: top if abs(x) < {load} ; left foot: bottom if abs(x + {1.25 * depth}) < {foot} ; right foot: bottom if abs(x - {1.25 * depth}) < {foot}",
+        "Cracks/Segments": f"0,0 ; 0,{0.5 * depth}", "Output/Probes": ""}
+    overrides.update({entry.replace("_", "/", 1).replace("_", " "): value for entry, value in more.items()})
+    return overrides
+
+
+def largest_force(run):
+    """In kN."""
+    return 1e-3 * THICKNESS * abs(run.model(PD)["largest force"]["value"])
+
+
+def beams():
+    table = Comparison("half-notched beams, largest force in kN")
+    first = None
+    for depth, high, curve, more, bound in (
+            (0.05, 30, "exponential", {}, 0.02), (0.05, 18, "exponential", {}, 0.05), (0.05, 18, "exponential", {"Peridynamics_Horizon_ratio": "4"}, 0.05),
+            (0.05, 18, "linear", {}, 0.05), (0.1, 30, "exponential", {"Boundary conditions_Displacement": "load: free, -8e-5*t ; left foot: 0, 0 ; right foot: free, 0"}, 0.05),
+            (0.05, 18, "exponential", {"Elasticity_Model": "state-based", "Material_Poisson_ratio": "0.2"}, 0.05)):
+        run = run_scene(BEAM, beam(depth, high, Material_Softening=curve, **more))
+        force = largest_force(run)
+        table.add(f"depth {depth}, {high} cells, {curve} {more}", force, COHESIVE[depth, curve], relative=bound)
+        if high == 18 and curve == "exponential" and not more:
+            first = force
+        energy = run.model(PD)["energy balance"]
+        check_less(abs(energy["imbalance"]), 1e-3 * energy["work"], "balance of energy")
+        check(energy["dissipated"] > 0.2 * energy["work"], f"energy dissipated: {energy['dissipated']} of {energy['work']}")
+    halved = run_scene(BEAM, beam(0.05, 18, Time_Time_step="0.0125"))
+    table.add("the same, steps half as long", largest_force(halved), first, relative=0.01)
+    table.show()
+
+
+def resume():
+    coarse = beam(0.05, 18)
+    whole = run_scene(BEAM, coarse)
+    two = run_scene(BEAM, coarse, ranks=2)
+    check(abs(largest_force(two) / largest_force(whole) - 1) < 2e-3, f"2 processes: {largest_force(two)}, 1: {largest_force(whole)}")
+    full = run_scene(BEAM, {**coarse, "Elasticity/Kinematics": "full", "Elasticity/Solver": "conjugate gradients", "Time/End time": "0.5", "Time/Time step": "0.05"})
+    linear = run_scene(BEAM, {**coarse, "Time/End time": "0.5", "Time/Time step": "0.05"})
+    check(abs(largest_force(full) / largest_force(linear) - 1) < 0.02, f"full kinematics: {largest_force(full)}, linear: {largest_force(linear)}")
+
+
+def refusals():
+    for overrides, words in (
+            ({"Material/Tensile strength": ""}, ("Tensile strength", "is empty, which 'Law = softening' needs")),
+            ({"Material/Fracture energy": ""}, ("Fracture energy", "is empty, which 'Law = softening' needs")),
+            ({"Material/Law": "linear"}, ("Tensile strength", "is for 'Law = softening'")),
+            ({"Material/Tensile strength": "-1"}, ("Tensile strength",)),
+            ({"Material/Critical stretch": "1e-4", "Material/Fracture energy": ""}, ("Critical stretch", "brittle")),
+            ({"Elasticity/Breaking": "at rest"}, ("Breaking", "softening")),
+            ({"Models": "finite elements"}, ("Law", "for 'Models = peridynamics' alone")),
+            ({"Material/Softening": "cubic"}, ("Softening", "linear, bilinear, exponential"))):
+        check_message(run_scene(BEAM, overrides, expect_error=True), *words)
+
+
+if __name__ == "__main__":
+    run_parts(beams, resume, refusals)
