@@ -189,6 +189,18 @@ namespace PeriDeal
 
 
   template <int dim>
+  double Search<dim>::hopeless_order(const double tolerance) const
+  {
+    constexpr double       most = 1e5; // times what the last one took
+    constexpr unsigned int few  = 3;
+    if (n_compared() <= few || !(now.error > tolerance) || now.order >= 1.)
+      return 0.;
+    const double more = std::pow(now.error / tolerance, family.growth_of_cost() / now.order);
+    return more > most ? now.order : 0.;
+  }
+
+
+  template <int dim>
   double Search<dim>::growth(const Attempt &attempt) const
   {
     return std::pow(attempt.fineness / latest.attempt.fineness, family.growth_of_cost());
