@@ -419,6 +419,9 @@ namespace PeriDeal
   {
     if (needs.jumps || (needs.disagree && family != Family::given))
       return 1.;
+    // A force at a point acts on the nearest node.
+    if (!points.cracks.empty() && scene.accuracy.measure != AccuracyMeasure::field)
+      return 1.;
     if (probes_at_ends())
       return family == Family::faces && dim < 3 ? 1.5 : 1.;
     switch (family)
