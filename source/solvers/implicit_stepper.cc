@@ -54,7 +54,7 @@ namespace PeriDeal
     double growth = 1.;
     if (!fixed && order > 0)
       {
-        const double size = estimated_error(u, t, order);
+        const double size = estimated_error(u, t, h, order);
         growth            = std::clamp(0.85 * std::pow(std::max(size, 1e-12), -1. / order),
                             0.2,
                             2.); // BDF2 is stable for ratios up to 1 + sqrt 2
@@ -192,10 +192,18 @@ namespace PeriDeal
   }
 
 
-  double ImplicitStepper::estimated_error(const Vector &u, const double t, const int order)
+  double ImplicitStepper::estimated_error(const Vector &u,
+                                          const double  t,
+                                          const double  h,
+                                          const int     order)
   {
     op.clear_constrained(error);
-    const double level = std::max(capacity_norm(op, u), capacity_norm(op, next));
+    constexpr double share = 0.01;
+    const double     old = capacity_norm(op, u), now = capacity_norm(op, next);
+    double           level = std::max(old, now);
+    // A body at 0, where a source begins within the step: against what that makes until the end.
+    if (old == 0.)
+      level = std::max(level, share * now * (span.end - t) / h);
     const double bound = (order == 3 ? third_order_tolerance : tolerance) * level;
     const double size  = level == 0. ? 0. : capacity_norm(op, error) / bound;
     if (!std::isfinite(size))

@@ -191,8 +191,8 @@ namespace PeriDeal
       return span.n_steps / n_equal_steps(span.end - span.start, dt);
     }
 
-    /** Of the step from u to `next`, as a multiple of what is allowed. */
-    double estimated_error(const Vector &u, const double t, const int order);
+    /** Of the step of size h from u at t to `next`, as a multiple of what is allowed. */
+    double estimated_error(const Vector &u, const double t, const double h, const int order);
 
     std::string unstable_message(const double t) const;
 

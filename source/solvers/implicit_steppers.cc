@@ -18,21 +18,57 @@ namespace PeriDeal
       SDIRK2(DiffusionOperator &op, const StepperOptions &options)
         : ImplicitStepper(op, options, "sdirk2")
       {
-        op.initialize_vector(k1);
-        op.initialize_vector(k2);
+        for (Vector *v : {&k1, &k2, &rate_before})
+          op.initialize_vector(*v);
+      }
+
+      void restart() override
+      {
+        ImplicitStepper::restart();
+        knows_rate = false;
       }
 
     private:
+      /**
+       * What changes at once before the first stage is in both rates, but not in the one at the end
+       * of the step before: the larger difference counts. Of what is smooth that is the one of k2.
+       */
       int step(const Vector &u, const double t, const double h) override
       {
         sdirk2(u, t, h, k1, k2);
-        const double gamma = 1. - std::sqrt(0.5);
-        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-          error.local_element(i) = gamma * h * (k2.local_element(i) - k1.local_element(i));
+        const double gamma      = 1. - std::sqrt(0.5);
+        const auto   difference = [&](const Vector &a, const Vector &b) {
+          for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+            error.local_element(i) = gamma * h * (a.local_element(i) - b.local_element(i));
+          op.clear_constrained(error);
+        };
+        double before = 0.;
+        if (knows_rate)
+          {
+            difference(k1, rate_before);
+            before = capacity_norm(op, error);
+          }
+        difference(k2, k1);
+        if (before > capacity_norm(op, error))
+          difference(k1, rate_before);
         return 2;
       }
 
-      Vector k1, k2;
+      void accept(const Vector &, const double) override
+      {
+        rate_before = k2;
+        knows_rate  = true;
+      }
+
+      void exchange_own(Archive &archive, const NodeKeys &keys) override
+      {
+        ImplicitStepper::exchange_own(archive, keys);
+        archive.exchange("rate before", rate_before, keys);
+        archive.exchange("knows rate", knows_rate);
+      }
+
+      Vector k1, k2, rate_before; // rate_before: at the end of the last step
+      bool   knows_rate = false;
     };
 
 

@@ -257,7 +257,13 @@ namespace PeriDeal
                                     0.4 * h * (rate.local_element(i) + stage_rate.local_element(i));
         // Where a prescribed value moves the rate is unknown, but there is no error either.
         op.clear_constrained(before);
-        const double level = std::max(capacity_norm(op, u), capacity_norm(op, now));
+        constexpr double share = 0.01;
+        const double     old   = capacity_norm(op, u);
+        double           level = std::max(old, capacity_norm(op, now));
+        // A body at 0, where a source begins within the step, maybe after the last stage: against
+        // what that makes until the end.
+        if (old == 0.)
+          level = std::max(level, share * (span.end - span.now) * capacity_norm(op, stage_rate));
         return level == 0. ? 0. : capacity_norm(op, before) / (tolerance * level);
       }
 

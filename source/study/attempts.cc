@@ -12,6 +12,8 @@
 #include <limits>
 #include <numeric>
 
+#include "roughness.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -46,6 +48,7 @@ namespace PeriDeal
     family             = family_for(body, limit, cracked && !body.given && on_faces(1.));
     if (!is_given() && family != Family::bonds)
       planes = material_planes(scene);
+    rough_order = order_of_rough_places(scene, box, planes);
     for (unsigned int d = 0; planes && d < dim; ++d)
       if (!planes_on_lines(d, with_points_on_planes(d, 2)))
         planes.reset();
@@ -407,7 +410,17 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::best_order() const
   {
+    return std::min(rough_order, order_of_elements());
+  }
+
+
+  template <int dim>
+  double Attempts<dim>::order_of_elements() const
+  {
     if (needs.jumps || (needs.disagree && family != Family::given))
+      return 1.;
+    // A force at a point acts on the nearest node.
+    if (!points.cracks.empty() && scene.accuracy.measure != AccuracyMeasure::field)
       return 1.;
     if (probes_at_ends())
       return family == Family::faces && dim < 3 ? 1.5 : 1.;
@@ -436,7 +449,7 @@ namespace PeriDeal
     // differences do not show an order.
     return family == Family::pairs || family == Family::given_pairs || family == Family::zone ?
              best_order() :
-             1.;
+             std::min(1., best_order());
   }
 
 

@@ -116,6 +116,7 @@ namespace PeriDeal
      */
     bool probes_at_ends() const;
 
+    double              order_of_elements() const;
     std::vector<double> first_counts() const;
     CellCounts          counts(const double fineness) const;
     bool                planes_on_lines(const unsigned int direction, const unsigned int n) const;
@@ -130,7 +131,8 @@ namespace PeriDeal
     double                   longest = 0.;
     NeedsOfFormulas          needs;
     std::optional<std::vector<std::vector<double>>> planes; // of materials, to be on lines
-    Family                                          family = Family::whole;
+    double                                          rough_order = 0.; // order_of_rough_places()
+    Family                                          family      = Family::whole;
     std::vector<double> first; // cells of the first mesh, of a family other than `bonds`
     double              first_fineness = 0.; // of the coarsest mesh; 0 until it is known
     double faces_unit = 0.; // fineness of the coarsest mesh that has the cracks on faces

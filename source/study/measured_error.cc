@@ -267,11 +267,29 @@ namespace PeriDeal
   template <int dim>
   void MeasuredError<dim>::refuse_forces_at_points(Simulation<dim> &simulation) const
   {
+    // Fields are measured there, too, and what lies within a hundredth of the longest edge.
+    constexpr double near    = 0.01;
+    double           longest = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      longest = std::max(longest, scene.domain.upper[d] - scene.domain.lower[d]);
+    const AccuracyMeasure    measure = scene.accuracy.measure;
     std::vector<std::string> points;
+    const auto               any_probe_at = [&](const Point<dim> &p) {
+      return std::any_of(scene.output.probes.begin(),
+                         scene.output.probes.end(),
+                         [&](const std::vector<double> &probe) {
+                           double square = 0.;
+                           for (unsigned int d = 0; d < dim; ++d)
+                             square += std::pow(probe[d] - p[d], 2);
+                           return std::sqrt(square) < near * longest;
+                         });
+    };
     for (const Part &part : scene.boundary_conditions.parts)
-      if (part.kind == Part::point)
+      if (part.kind == Part::point &&
+          (measure == AccuracyMeasure::field ||
+           (measure == AccuracyMeasure::probes && any_probe_at(part.position<dim>()))))
         points.push_back(part.name);
-    if (dim == 1 || points.empty() || scene.accuracy.measure == AccuracyMeasure::stress_intensity)
+    if (dim == 1 || points.empty())
       return;
     constexpr double  small    = 1e-6; // points that only keep a body from floating
     const std::string reaction = scene.deforms ? "boundary force" : "boundary flux";

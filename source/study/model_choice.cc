@@ -258,6 +258,9 @@ namespace PeriDeal
           "room around the ends of cracks for some cells.");
         if (family.n_tried() >= most)
           return std::to_string(most) + " tries";
+        if (const double order = family.hopeless_order(scene.accuracy.tolerance); order > 0.)
+          return "reach: the error gets smaller as slowly as cells to the power " +
+                 rounded_text(order);
         if (attempt.fineness <= family.last().attempt.fineness)
           return "the number of halvings of a mesh ('Refinements' in section 'Domain')";
         // A transient problem is computed again for the results on the way.

@@ -59,14 +59,16 @@ namespace PeriDeal
       return now;
     if (n == 2)
       {
-        now.error = error_of(steps[0], steps[1], best > 1. ? usual_order : best);
+        now.error = error_of(steps[0], steps[1], best > 1. ? std::min(usual_order, best) : best);
         return now;
       }
     now.order           = order_of(steps[n - 3], steps[n - 2], steps[n - 1], lowest, best);
     const double before = error_of(steps[n - 3], steps[n - 2], now.order);
-    now.error =
-      std::max(error_of(steps[n - 2], steps[n - 1], now.order),
-               0.5 * before * std::pow(steps[n - 2].fineness / steps[n - 1].fineness, now.order));
+    // Of an order that is known beforehand, since errors come unevenly, both count alike.
+    const double counts = lowest < best ? 0.5 : 1.;
+    now.error           = std::max(error_of(steps[n - 2], steps[n - 1], now.order),
+                         counts * before *
+                           std::pow(steps[n - 2].fineness / steps[n - 1].fineness, now.order));
     return now;
   }
 

@@ -182,9 +182,22 @@ namespace PeriDeal
              largest_error(steps) <= tolerance;
     // A low order is that of something rough, which comes unevenly.
     constexpr double rough = 0.7, careful = 0.8;
-    if (now.order < rough * family.best_order() && now.error > careful * tolerance)
+    const bool is_uneven = family.lowest_order() >= family.best_order();
+    if ((is_uneven || now.order < rough * family.best_order()) && now.error > careful * tolerance)
       return false;
     return steps.size() > 3 || now.order > 0.5 * family.best_order();
+  }
+
+
+  template <int dim>
+  double Search<dim>::hopeless_order(const double tolerance) const
+  {
+    constexpr double       most = 1e5; // times what the last one took
+    constexpr unsigned int few  = 3;
+    if (n_compared() <= few || !(now.error > tolerance) || now.order >= 1.)
+      return 0.;
+    const double more = std::pow(now.error / tolerance, family.growth_of_cost() / now.order);
+    return more > most ? now.order : 0.;
   }
 
 

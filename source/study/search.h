@@ -97,6 +97,12 @@ namespace PeriDeal
      */
     bool is_within(const double tolerance) const;
 
+    /**
+     * The order with which the error gets smaller if that is so low that the tolerance is out of
+     * reach, else 0.
+     */
+    double hopeless_order(const double tolerance) const;
+
     unsigned int n_tried() const
     {
       return n;

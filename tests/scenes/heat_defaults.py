@@ -6,6 +6,7 @@
     heat_defaults.py fall_back   what keeps bonds from exchange: the note, and its advice
     heat_defaults.py moisture    two layers of other saturated concentrations: what is continuous, and `Diffusivity`
     heat_defaults.py steady      an effective conductivity is told of steady states alone
+    heat_defaults.py sudden      a body at 0 that a source heats from one moment to another
 """
 
 import math
@@ -145,5 +146,17 @@ def steady():
                 check(abs(found - 1) < 2e-3, f"t = {end}, {model}: effective conductivity {found}")
 
 
+def sudden():
+    """A body at 0 that a source heats from one moment to another: whatever the step that meets the beginning, it warms by what the source gives."""
+    begin, end = 0.0559, 0.0957
+    table = Comparison("a source that is switched on and off")
+    for stepper in ("rkc2", "bdf2", "sdirk2", "auto"):
+        run = run_scene(wall([], "40", 1, "finite elements, peridynamics", sides="",
+                             more=transient(stepper, 0.3, initial="0") + f"Initial and source/Source = if(t > {begin} && t < {end}, 50, 0)\nTime/Tolerance = 1e-5\n"))
+        for model in run.summary["models"]:
+            table.add(f"{stepper}, {model}", run.probe(model, (0.5,), time=0.3), 50 * (end - begin), relative=2e-3)
+    table.show()
+
+
 if __name__ == "__main__":
-    run_parts(material, fall_back, moisture, steady)
+    run_parts(material, fall_back, moisture, steady, sudden)

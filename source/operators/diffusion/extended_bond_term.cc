@@ -223,6 +223,8 @@ namespace PeriDeal
           " is isolated: no bond of it is left. Check 'Horizon' in section 'Peridynamics' and the cracks in section "
           "'Cracks', which may cut all bonds of a node (a crack in 'Horizon ratio' close to 1).";
     throw_on_all_if_any(bonds.nodes().communicator(), message);
+    if (of_all.after == RowsOfK::After::start && !families.cracks().history().changes_ever())
+      this->forget_sums();
   }
 
 

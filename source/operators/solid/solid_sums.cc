@@ -4,6 +4,8 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/solid_sums.h>
 
+#include <type_traits>
+
 #include "../lattice/state_lattice.h"
 #include "change_along.h"
 
@@ -58,11 +60,13 @@ namespace PeriDeal
   }
 
 
+  // Inline, with what all bonds of a row have looked up once: rates of whole applications at
+  // surfaces go with it.
   template <int dim>
-  template <typename Visit>
-  void SolidSums<dim>::visit_parts(const BondRows<dim> &rows,
-                                   const std::size_t    row,
-                                   const Visit         &visit) const
+  template <bool is_beyond, typename Visit>
+  inline void SolidSums<dim>::visit_parts(const BondRows<dim> &rows,
+                                          const std::size_t    row,
+                                          const Visit         &visit) const
   {
     const std::size_t begin = rows.starts[row], end = rows.starts[row + 1];
     if (!rows.is_packed())
@@ -78,18 +82,22 @@ namespace PeriDeal
             visit(rows.neighbors[k], rows.moments[k], laws.slope * rows.springs[k], 1.);
         return;
       }
-    const unsigned int i   = rows.nodes[row];
-    const double       own = laws.stiffness(i);
+    const unsigned int i      = rows.nodes[row];
+    const double       own    = laws.stiffness(i);
+    const double       volume = families.nodes().volume(i);
     for (std::size_t k = begin; k < end; ++k)
       if (rows.codes[k] != BondCode::gone)
         {
           const UnitBond<dim> &unit = rows.units[BondCode::number(rows.codes[k])];
           const unsigned int   j    = rows.neighbors[k];
           // Of spring and W x e volumes drop out.
-          visit(j,
-                unit.moment,
-                (own + (ends.is_fictitious(j) ? 0. : laws.stiffness(j))) / unit.weight,
-                bonds.volumes_of(rows, i, k));
+          if constexpr (is_beyond)
+            visit(j, unit.moment, own / unit.weight, volume * (*ends.images)[ends.image(j)].volume);
+          else
+            visit(j,
+                  unit.moment,
+                  (own + laws.stiffness(j)) / unit.weight,
+                  bonds.volumes_of(rows, i, k));
         }
   }
 
@@ -100,22 +108,30 @@ namespace PeriDeal
     if (lattice)
       lattice->dilatation_forces(tau, u);
     ends.find(u);
-    const auto sum_of = [&](const BondRows<dim> &rows, const std::size_t row, const auto &value) {
+    const auto sum_of = [&](const auto           is_beyond,
+                            const BondRows<dim> &rows,
+                            const std::size_t    row,
+                            const auto          &value) {
       double              sum = 0.;
       const double *const own = u + dim * rows.nodes[row];
-      visit_parts(rows,
-                  row,
-                  [&](const unsigned int j, const Tensor<1, dim> &p, const double, const double w) {
-                    sum += w * change_along(p, own, value(j));
-                  });
+      visit_parts<decltype(is_beyond)::value>(
+        rows,
+        row,
+        [&](const unsigned int j, const Tensor<1, dim> &p, const double, const double w) {
+          sum += w * change_along(p, own, value(j));
+        });
       return laws.tangent_tension(rows.nodes[row], sum);
     };
     for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
       tau[bonds.body.nodes[row]] =
-        sum_of(bonds.body, row, [u](const unsigned int j) { return u + dim * j; });
+        sum_of(std::false_type(), bonds.body, row, [u](const unsigned int j) {
+          return u + dim * j;
+        });
     for (std::size_t row = 0; row < bonds.beyond.nodes.size(); ++row)
       tau[bonds.beyond.nodes[row]] +=
-        sum_of(bonds.beyond, row, [&](const unsigned int j) { return ends.value(u, j); });
+        sum_of(std::true_type(), bonds.beyond, row, [&](const unsigned int j) {
+          return ends.images->value(ends.image(j));
+        });
   }
 
 
@@ -126,20 +142,22 @@ namespace PeriDeal
       lattice->forces(y.begin(), u, tau);
     const auto tension = [tau](const unsigned int i) { return tau != nullptr ? tau[i] : 0.; };
     // Of a row; value(j), far_tension(j) of the far ends; take(j, force) is told each bond's.
-    const auto force_of = [&](const BondRows<dim> &rows,
+    const auto force_of = [&](const auto           is_beyond,
+                              const BondRows<dim> &rows,
                               const std::size_t    row,
                               const auto          &value,
                               const auto          &far_tension,
                               const auto          &take) {
-      const unsigned int i = rows.nodes[row];
+      const unsigned int i   = rows.nodes[row];
+      const double       own = tension(i);
       Tensor<1, dim>     sum;
-      visit_parts(
+      visit_parts<decltype(is_beyond)::value>(
         rows,
         row,
         [&](const unsigned int j, const Tensor<1, dim> &p, const double s, const double w) {
           const double         size  = LinearPeridynamicSolid::force(s,
                                                             change_along(p, u + dim * i, value(j)),
-                                                            tension(i) + far_tension(j));
+                                                            own + far_tension(j));
           const Tensor<1, dim> force = (size * w) * p;
           sum += force;
           take(j, force);
@@ -149,6 +167,7 @@ namespace PeriDeal
     for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
       {
         const Tensor<1, dim> force = force_of(
+          std::false_type(),
           bonds.body,
           row,
           [u](const unsigned int j) { return u + dim * j; },
@@ -166,6 +185,7 @@ namespace PeriDeal
     for (std::size_t row = 0; row < bonds.beyond.nodes.size(); ++row)
       {
         const Tensor<1, dim> force = force_of(
+          std::true_type(),
           bonds.beyond,
           row,
           [&](const unsigned int j) { return images.value(ends.image(j)); },

@@ -32,13 +32,14 @@ namespace PeriDeal
     {
       form         = std::move(of_bonds);
       communicator = layout->get_mpi_communicator();
-      sums.resize(layout->locally_owned_size());
-      n_own_bonds = form->row_sums(sums.data());
+      n_nodes      = layout->locally_owned_size();
+      forget_sums();
     }
 
     /** Those of some owned nodes have changed. Not collective. */
     virtual void update_rows(const Rows &rows)
     {
+      all_sums();
       form->update_rows(rows, sums.data());
       n_own_bonds = -1.;
     }
@@ -46,13 +47,14 @@ namespace PeriDeal
     /** The conductivities of all nodes have changed. Not collective. */
     virtual void update_conductivities()
     {
+      sums.resize(n_nodes);
       form->update_conductivities(sums.data());
     }
 
     /** Sum of the W_ij of an owned node. */
     double sum_of(const unsigned int node) const
     {
-      return sums[node];
+      return all_sums()[node];
     }
 
     std::string name() const
@@ -78,10 +80,11 @@ namespace PeriDeal
 
     void add_rows(Vector &diagonal, std::vector<double> &of_rows, const Rows &rows) const override
     {
+      const std::vector<double> &all = all_sums();
       for (std::size_t k = 0; k < rows.size(); ++k)
         {
-          diagonal.local_element(rows[k]) += sums[rows[k]];
-          of_rows[k] += 2. * sums[rows[k]];
+          diagonal.local_element(rows[k]) += all[rows[k]];
+          of_rows[k] += 2. * all[rows[k]];
         }
     }
 
@@ -89,7 +92,7 @@ namespace PeriDeal
     {
       if (n_own_bonds < 0.)
         {
-          std::vector<double> again(sums.size());
+          std::vector<double> again(n_nodes);
           n_own_bonds = form->row_sums(again.data());
         }
       size.bonds = static_cast<unsigned long long>(
@@ -106,10 +109,27 @@ namespace PeriDeal
       return nullptr;
     }
 
+    /** Their memory is free until they are asked for again, which takes a sum over all bonds. */
+    void forget_sums() const
+    {
+      std::vector<double>().swap(sums);
+    }
+
   private:
-    std::unique_ptr<BondForm> form;
-    std::vector<double>       sums;
-    MPI_Comm                  communicator = MPI_COMM_SELF;
-    mutable double            n_own_bonds  = -1.; // of this process; negative: to be counted
+    const std::vector<double> &all_sums() const
+    {
+      if (sums.empty())
+        {
+          sums.resize(n_nodes);
+          n_own_bonds = form->row_sums(sums.data());
+        }
+      return sums;
+    }
+
+    std::unique_ptr<BondForm>   form;
+    mutable std::vector<double> sums; // or empty
+    unsigned int                n_nodes      = 0;
+    MPI_Comm                    communicator = MPI_COMM_SELF;
+    mutable double              n_own_bonds  = -1.; // of this process; negative: to be counted
   };
 } // namespace PeriDeal

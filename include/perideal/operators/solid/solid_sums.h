@@ -53,7 +53,7 @@ namespace PeriDeal
 
   private:
     /** Those that are not gone: visit(j, p, s, w), W xi = w p, the spring s/w. */
-    template <typename Visit>
+    template <bool is_beyond, typename Visit>
     void visit_parts(const BondRows<dim> &rows, const std::size_t row, const Visit &visit) const;
 
     const Families<dim>               &families;
