@@ -152,6 +152,25 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BondBreaking<dim>::add_tensions(const double *u)
+  {
+    const Nodes<dim> &nodes = bonds.families.nodes();
+    const double      reach = this->paths->reach() + bonds.families.weights().horizon();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      if (this->paths->any_tip_near(nodes.position(i), reach))
+        bonds.rows.for_each_in_body(i, [&](const auto &bond) {
+          if (!bonds.rows.is_whole(bond.number))
+            return;
+          const Tensor<1, dim> xi = bonds.ends.vector(i, bond.neighbor);
+          this->paths->add(nodes.position(i) + 0.5 * xi,
+                           xi,
+                           bonds.rows.stiffnesses(i, bond.neighbor) *
+                             bonds.kinematics.extension_moment(u, i, bond));
+        });
+  }
+
+
+  template <int dim>
   double BondBreaking<dim>::stretch_over_critical(const Vector &u)
   {
     if (!criterion)
@@ -164,7 +183,9 @@ namespace PeriDeal
       bonds.rows.for_each(i, [&](const auto &bond) {
         if (!bonds.rows.is_whole(bond.number) || !bonds.ends.may_break(bond.neighbor))
           return;
-        if (const BondMeasure found = measure(u.begin(), i, bond); found.exceeds(most))
+        const unsigned int j = bonds.ends.is_fictitious(bond.neighbor) ? i : bond.neighbor;
+        if (const BondMeasure found = measure(u.begin(), i, bond);
+            found.exceeds(most) && this->is_in_the_way(i, j))
           most = found.over_limit();
       });
     u.set_ghost_state(false);
@@ -215,8 +236,9 @@ namespace PeriDeal
     u.update_ghost_values();
     find_inside(u.begin());
     find_beyond(u.begin());
+    const bool any = this->select(u.begin(), share);
     u.set_ghost_state(false);
-    if (!this->select(share))
+    if (!any)
       return {};
     for (const auto &bond : overstretched)
       losing.push_back(bond.node);
@@ -268,6 +290,8 @@ namespace PeriDeal
       return;
     if (criterion)
       so_far.exchange(archive);
+    if (this->paths)
+      this->paths->exchange(archive);
     const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
     if (!archive.loads())
       return;

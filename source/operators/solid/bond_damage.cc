@@ -35,12 +35,34 @@ namespace PeriDeal
     : families(families)
     , body(body)
     , criterion(criterion_of<dim>({families, body.material, std::move(crossing_energy)}))
-  {}
+  {
+    if (criterion && body.elasticity.averages_crack_direction())
+      paths.emplace(body.cracks.cracks, families.weights().horizon());
+  }
 
 
   template <int dim>
-  bool BondDamage<dim>::select(const double share)
+  void BondDamage<dim>::keep_to_paths(const double *u)
   {
+    const MPI_Comm all = families.nodes().communicator();
+    if (!paths || Utilities::MPI::max(overstretched.empty() ? 0. : 1., all) == 0.)
+      return;
+    paths->begin();
+    add_tensions(u);
+    paths->turn(all);
+    overstretched.erase(std::remove_if(overstretched.begin(),
+                                       overstretched.end(),
+                                       [&](const Overstretched &bond) {
+                                         return !is_in_the_way(bond.node, bond.neighbor);
+                                       }),
+                        overstretched.end());
+  }
+
+
+  template <int dim>
+  bool BondDamage<dim>::select(const double *u, const double share)
+  {
+    keep_to_paths(u);
     double most = 0.;
     for (const Overstretched &bond : overstretched)
       most = std::max(most, bond.ratio);
@@ -54,6 +76,14 @@ namespace PeriDeal
       overstretched.end());
     if (!so_far.places.elsewhere)
       keep_places(most);
+    if (paths)
+      {
+        const Nodes<dim>                           &nodes = families.nodes();
+        std::vector<typename CrackPaths<dim>::Ends> ends;
+        for (const Overstretched &bond : overstretched)
+          ends.emplace_back(nodes.position(bond.node), nodes.position(bond.neighbor));
+        paths->advance(ends, nodes.communicator());
+      }
     return true;
   }
 

@@ -5,10 +5,13 @@
 
 #include <perideal/base/types.h>
 #include <perideal/operators/solid/break_history.h>
+#include <perideal/operators/solid/crack_paths.h>
 #include <perideal/operators/solid/damage_criterion.h>
 #include <perideal/scene/body_parameters.h>
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace PeriDeal
@@ -16,7 +19,8 @@ namespace PeriDeal
   /**
    * What breaks of a solid's bonds, wherever they stand (BondBreaking, ZoneBreaking): those beyond
    * a DamageCriterion with at least a share of the largest measure over its limit; where the first
-   * ones were, and what all have released.
+   * ones were, and what all have released. Where cracks go across the mean tension about their tips
+   * (CrackPaths), bonds that lie beside their ways do not break.
    */
   template <int dim>
   class BondDamage
@@ -77,18 +81,30 @@ namespace PeriDeal
 
     /**
      * Leave what breaks now in BondDamage::overstretched, and keep the places. Returns whether
-     * there is any on any process. Collective.
+     * there is any on any process. Ghosts of u are up to date. Collective.
      */
-    bool select(const double share);
+    bool select(const double *u, const double share);
+
+    /** Add the whole bonds of owned nodes near tips to BondDamage::paths. Not collective. */
+    virtual void add_tensions(const double *u) = 0;
+
+    /** What lies beside the way of a crack does not break. Not collective. */
+    bool is_in_the_way(const unsigned int i, const unsigned int j) const
+    {
+      const Nodes<dim> &nodes = families.nodes();
+      return !paths || paths->may_break({nodes.position(i), nodes.position(j)});
+    }
 
     const Families<dim>                        &families;
     const BodyParameters<dim>                  &body;
     std::unique_ptr<const DamageCriterion<dim>> criterion; // null: nothing breaks
     BreakHistory                                so_far;
+    std::optional<CrackPaths<dim>>              paths; // none: bonds break one by one
     std::vector<Overstretched>                  overstretched;
     std::vector<unsigned int> loaded_side; // SolidLoads::sides_nearby(); empty: none
 
   private:
+    void keep_to_paths(const double *u);
     void keep_places(const double most);
   };
 } // namespace PeriDeal
