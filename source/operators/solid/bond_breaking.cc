@@ -179,6 +179,7 @@ namespace PeriDeal
     double most = 0.;
     u.update_ghost_values();
     bonds.ends.find(u.begin());
+    this->turn_paths(u.begin());
     for (unsigned int i = 0; i < bonds.families.nodes().n_owned(); ++i)
       bonds.rows.for_each(i, [&](const auto &bond) {
         if (!bonds.rows.is_whole(bond.number) || !bonds.ends.may_break(bond.neighbor))

@@ -42,14 +42,23 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondDamage<dim>::keep_to_paths(const double *u)
+  void BondDamage<dim>::turn_paths(const double *u)
   {
-    const MPI_Comm all = families.nodes().communicator();
-    if (!paths || Utilities::MPI::max(overstretched.empty() ? 0. : 1., all) == 0.)
+    if (!paths)
       return;
     paths->begin();
     add_tensions(u);
-    paths->turn(all);
+    paths->turn(families.nodes().communicator());
+  }
+
+
+  template <int dim>
+  void BondDamage<dim>::keep_to_paths(const double *u)
+  {
+    const double any = overstretched.empty() ? 0. : 1.;
+    if (!paths || Utilities::MPI::max(any, families.nodes().communicator()) == 0.)
+      return;
+    turn_paths(u);
     overstretched.erase(std::remove_if(overstretched.begin(),
                                        overstretched.end(),
                                        [&](const Overstretched &bond) {

@@ -159,6 +159,7 @@ namespace PeriDeal
       return 0.;
     double most = 0.;
     u.update_ghost_values();
+    this->turn_paths(u.begin());
     visit_measures(u, [&](const auto i, const auto j, const BondMeasure &found) {
       if (found.exceeds(most) && zone.may_break(i, j) && this->is_in_the_way(i, j))
         most = found.over_limit();

@@ -88,6 +88,9 @@ namespace PeriDeal
     /** Add the whole bonds of owned nodes near tips to BondDamage::paths. Not collective. */
     virtual void add_tensions(const double *u) = 0;
 
+    /** Ways of cracks look across the tension at u, as in select(). Collective. */
+    void turn_paths(const double *u);
+
     /** What lies beside the way of a crack does not break. Not collective. */
     bool is_in_the_way(const unsigned int i, const unsigned int j) const
     {
