@@ -299,7 +299,7 @@ namespace PeriDeal
         {
           if (!scene.material.breaks() || !scene.elasticity.is_static() ||
               scene.elasticity.breaks_in_motion() || !scene.domain.has_lattice() ||
-              scene.elasticity.averages_crack_direction())
+              scene.elasticity.text("Crack direction") == "mean tension")
             return;
           for (unsigned int k = 0; k < scene.cracks.cracks.size(); ++k)
             {

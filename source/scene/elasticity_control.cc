@@ -111,7 +111,7 @@ namespace PeriDeal
     refuse(is_given("Crack direction") && !is_static(),
            "Crack direction",
            "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
-    refuse(averages_crack_direction() && dim != 2,
+    refuse(text("Crack direction") == "mean tension" && dim != 2,
            "Crack direction",
            "found 'mean tension', which is for 'Dimension = 2'. Leave the entry out.");
     refuse(

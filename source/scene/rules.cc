@@ -363,7 +363,7 @@ namespace PeriDeal
       "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
     const bool has_planes_of_symmetry = !scene.boundary_conditions.symmetry.empty();
     scene.elasticity.refuse(
-      scene.elasticity.averages_crack_direction() &&
+      scene.elasticity.text("Crack direction") == "mean tension" &&
         (scene.cracks.cracks.empty() || scene.cracks.change() || has_planes_of_symmetry),
       "Crack direction",
       std::string("found 'mean tension', which is for ") +

@@ -68,12 +68,6 @@ namespace PeriDeal
       return text("Breaking") != "at rest";
     }
 
-    /** Cracks of bodies at rest go across a mean of the tension about their tips. */
-    bool averages_crack_direction() const
-    {
-      return text("Crack direction") == "mean tension";
-    }
-
     /** `conjugate gradients` and so on, as in scenes. */
     const std::string &solver_name() const
     {

@@ -152,20 +152,20 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondBreaking<dim>::add_tensions(const double *u)
+  void BondBreaking<dim>::add_tensions(CrackPaths<dim> &paths, const double *u) const
   {
     const Nodes<dim> &nodes = bonds.families.nodes();
-    const double      reach = this->paths->reach() + bonds.families.weights().horizon();
+    const double      reach = paths.reach() + 0.5 * bonds.families.weights().horizon();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      if (this->paths->any_tip_near(nodes.position(i), reach))
+      if (paths.any_tip_near(nodes.position(i), reach))
         bonds.rows.for_each_in_body(i, [&](const auto &bond) {
           if (!bonds.rows.is_whole(bond.number))
             return;
           const Tensor<1, dim> xi = bonds.ends.vector(i, bond.neighbor);
-          this->paths->add(nodes.position(i) + 0.5 * xi,
-                           xi,
-                           bonds.rows.stiffnesses(i, bond.neighbor) *
-                             bonds.kinematics.extension_moment(u, i, bond));
+          paths.add(nodes.position(i) + 0.5 * xi,
+                    xi,
+                    bonds.rows.stiffnesses(i, bond.neighbor) *
+                      bonds.kinematics.extension_moment(u, i, bond));
         });
   }
 
@@ -179,14 +179,12 @@ namespace PeriDeal
     double most = 0.;
     u.update_ghost_values();
     bonds.ends.find(u.begin());
-    this->turn_paths(u.begin());
+    this->turn_paths([&](auto &paths) { add_tensions(paths, u.begin()); });
     for (unsigned int i = 0; i < bonds.families.nodes().n_owned(); ++i)
       bonds.rows.for_each(i, [&](const auto &bond) {
         if (!bonds.rows.is_whole(bond.number) || !bonds.ends.may_break(bond.neighbor))
           return;
-        const unsigned int j = bonds.ends.is_fictitious(bond.neighbor) ? i : bond.neighbor;
-        if (const BondMeasure found = measure(u.begin(), i, bond);
-            found.exceeds(most) && this->is_in_the_way(i, j))
+        if (const BondMeasure found = measure(u.begin(), i, bond); found.exceeds(most))
           most = found.over_limit();
       });
     u.set_ghost_state(false);
@@ -233,13 +231,15 @@ namespace PeriDeal
   {
     if (!criterion)
       return {};
-    overstretched.clear();
     u.update_ghost_values();
-    find_inside(u.begin());
-    find_beyond(u.begin());
-    const bool any = this->select(u.begin(), share);
+    this->find_all(
+      [&] {
+        find_inside(u.begin());
+        find_beyond(u.begin());
+      },
+      [&](auto &paths) { add_tensions(paths, u.begin()); });
     u.set_ghost_state(false);
-    if (!any)
+    if (!this->select(share))
       return {};
     for (const auto &bond : overstretched)
       losing.push_back(bond.node);
@@ -291,8 +291,8 @@ namespace PeriDeal
       return;
     if (criterion)
       so_far.exchange(archive);
-    if (this->paths)
-      this->paths->exchange(archive);
+    if (criterion && criterion->paths())
+      criterion->paths()->exchange(archive);
     const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
     if (!archive.loads())
       return;

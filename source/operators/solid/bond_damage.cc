@@ -7,6 +7,7 @@
 #include <perideal/base/point_order.h>
 #include <perideal/operators/solid/bond_damage.h>
 #include <perideal/operators/solid/bond_strengths.h>
+#include <perideal/operators/solid/mean_tension_criterion.h>
 
 #include <algorithm>
 #include <utility>
@@ -19,8 +20,11 @@ namespace PeriDeal
   {
     /** The one list of criteria, each by its entries; null: no bonds break. */
     template <int dim>
-    std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds)
+    std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds,
+                                                       const BodyParameters<dim> &body)
     {
+      if (bonds.material.breaks() && body.elasticity.text("Crack direction") == "mean tension")
+        return std::make_unique<MeanTensionCriterion<dim>>(bonds, body.cracks.cracks);
       if (bonds.material.breaks())
         return std::make_unique<BondStrengths<dim>>(bonds);
       return nullptr;
@@ -34,44 +38,13 @@ namespace PeriDeal
                               std::function<double(unsigned int)> &&crossing_energy)
     : families(families)
     , body(body)
-    , criterion(criterion_of<dim>({families, body.material, std::move(crossing_energy)}))
-  {
-    if (criterion && body.elasticity.averages_crack_direction())
-      paths.emplace(body.cracks.cracks, families.weights().horizon());
-  }
+    , criterion(criterion_of<dim>({families, body.material, std::move(crossing_energy)}, body))
+  {}
 
 
   template <int dim>
-  void BondDamage<dim>::turn_paths(const double *u)
+  bool BondDamage<dim>::select(const double share)
   {
-    if (!paths)
-      return;
-    paths->begin();
-    add_tensions(u);
-    paths->turn(families.nodes().communicator());
-  }
-
-
-  template <int dim>
-  void BondDamage<dim>::keep_to_paths(const double *u)
-  {
-    const double any = overstretched.empty() ? 0. : 1.;
-    if (!paths || Utilities::MPI::max(any, families.nodes().communicator()) == 0.)
-      return;
-    turn_paths(u);
-    overstretched.erase(std::remove_if(overstretched.begin(),
-                                       overstretched.end(),
-                                       [&](const Overstretched &bond) {
-                                         return !is_in_the_way(bond.node, bond.neighbor);
-                                       }),
-                        overstretched.end());
-  }
-
-
-  template <int dim>
-  bool BondDamage<dim>::select(const double *u, const double share)
-  {
-    keep_to_paths(u);
     double most = 0.;
     for (const Overstretched &bond : overstretched)
       most = std::max(most, bond.ratio);
@@ -85,15 +58,22 @@ namespace PeriDeal
       overstretched.end());
     if (!so_far.places.elsewhere)
       keep_places(most);
-    if (paths)
-      {
-        const Nodes<dim>                           &nodes = families.nodes();
-        std::vector<typename CrackPaths<dim>::Ends> ends;
-        for (const Overstretched &bond : overstretched)
-          ends.emplace_back(nodes.position(bond.node), nodes.position(bond.neighbor));
-        paths->advance(ends, nodes.communicator());
-      }
+    lead_paths_on();
     return true;
+  }
+
+
+  template <int dim>
+  void BondDamage<dim>::lead_paths_on()
+  {
+    CrackPaths<dim> *const paths = criterion->paths();
+    if (!paths)
+      return;
+    const Nodes<dim>                           &nodes = families.nodes();
+    std::vector<typename CrackPaths<dim>::Ends> ends;
+    for (const Overstretched &bond : overstretched)
+      ends.emplace_back(nodes.position(bond.node), nodes.position(bond.neighbor));
+    paths->advance(ends, nodes.communicator());
   }
 
 

@@ -3,15 +3,14 @@
 
 #pragma once
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/base/types.h>
 #include <perideal/operators/solid/break_history.h>
-#include <perideal/operators/solid/crack_paths.h>
 #include <perideal/operators/solid/damage_criterion.h>
 #include <perideal/scene/body_parameters.h>
 
-#include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace PeriDeal
@@ -19,8 +18,7 @@ namespace PeriDeal
   /**
    * What breaks of a solid's bonds, wherever they stand (BondBreaking, ZoneBreaking): those beyond
    * a DamageCriterion with at least a share of the largest measure over its limit; where the first
-   * ones were, and what all have released. Where cracks go across the mean tension about their tips
-   * (CrackPaths), bonds that lie beside their ways do not break.
+   * ones were, and what all have released.
    */
   template <int dim>
   class BondDamage
@@ -81,33 +79,51 @@ namespace PeriDeal
 
     /**
      * Leave what breaks now in BondDamage::overstretched, and keep the places. Returns whether
-     * there is any on any process. Ghosts of u are up to date. Collective.
+     * there is any on any process. Collective.
      */
-    bool select(const double *u, const double share);
+    bool select(const double share);
 
-    /** Add the whole bonds of owned nodes near tips to BondDamage::paths. Not collective. */
-    virtual void add_tensions(const double *u) = 0;
-
-    /** Ways of cracks look across the tension at u, as in select(). Collective. */
-    void turn_paths(const double *u);
-
-    /** What lies beside the way of a crack does not break. Not collective. */
-    bool is_in_the_way(const unsigned int i, const unsigned int j) const
+    /**
+     * Leave all bonds beyond their limits in BondDamage::overstretched. Ways of cracks are turned
+     * first where there are some. Collective.
+     *
+     * @param find adds those of this process @param add_tensions of whole bonds to CrackPaths
+     */
+    template <typename Find, typename AddTensions>
+    void find_all(const Find &find, const AddTensions &add_tensions)
     {
-      const Nodes<dim> &nodes = families.nodes();
-      return !paths || paths->may_break({nodes.position(i), nodes.position(j)});
+      overstretched.clear();
+      find();
+      const double any = overstretched.empty() ? 0. : 1.;
+      if (!criterion->paths() ||
+          dealii::Utilities::MPI::max(any, families.nodes().communicator()) == 0.)
+        return;
+      turn_paths(add_tensions);
+      overstretched.clear();
+      find();
+    }
+
+    /** Ways of cracks, if there are any, look across the tension. Collective. */
+    template <typename AddTensions>
+    void turn_paths(const AddTensions &add_tensions)
+    {
+      CrackPaths<dim> *const paths = criterion->paths();
+      if (!paths)
+        return;
+      paths->begin();
+      add_tensions(*paths);
+      paths->turn(families.nodes().communicator());
     }
 
     const Families<dim>                        &families;
     const BodyParameters<dim>                  &body;
     std::unique_ptr<const DamageCriterion<dim>> criterion; // null: nothing breaks
     BreakHistory                                so_far;
-    std::optional<CrackPaths<dim>>              paths; // none: bonds break one by one
     std::vector<Overstretched>                  overstretched;
     std::vector<unsigned int> loaded_side; // SolidLoads::sides_nearby(); empty: none
 
   private:
-    void keep_to_paths(const double *u);
+    void lead_paths_on();
     void keep_places(const double most);
   };
 } // namespace PeriDeal

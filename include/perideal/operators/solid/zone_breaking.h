@@ -139,7 +139,7 @@ namespace PeriDeal
       double   time;
     };
 
-    void add_tensions(const double *u) override;
+    void add_tensions(CrackPaths<dim> &paths, const Vector &u) const;
 
     /** take(i, j, measure) for the whole bonds that start at owned nodes. */
     template <typename Take>
