@@ -290,9 +290,7 @@ namespace PeriDeal
     if (!changes)
       return;
     if (criterion)
-      so_far.exchange(archive);
-    if (criterion && criterion->paths())
-      criterion->paths()->exchange(archive);
+      this->exchange_history(archive);
     const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
     if (!archive.loads())
       return;

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <string>
 
 namespace PeriDeal
 {
@@ -16,23 +16,9 @@ namespace PeriDeal
 
   namespace
   {
-    double knob(const char *name, const double value)
-    {
-      const char *const text = std::getenv(name);
-      return text ? std::atof(text) : value;
-    }
-    const double knob_reach = knob("PD_REACH", 1.), knob_aside = knob("PD_ASIDE", 2.),
-                 knob_ahead = knob("PD_AHEAD", 2.), knob_back = knob("PD_BACK", 1.),
-                 knob_forward = knob("PD_FORWARD", 0.);
-    // In horizons: how far ahead of its tip a way allows bonds to break, and beside it forbids it.
-    double ahead()
-    {
-      return knob_ahead;
-    }
-    double aside()
-    {
-      return knob_aside;
-    }
+    // In horizons: what the tension is a mean over, how far ahead of a tip bonds may break, and up
+    // to where beside its way not.
+    constexpr double about = 1.5, ahead = 2., aside = 2.;
 
 
     double cross(const Tensor<1, 2> &a, const Tensor<1, 2> &b)
@@ -95,7 +81,7 @@ namespace PeriDeal
   template <int dim>
   double CrackPaths<dim>::reach() const
   {
-    return knob_reach * horizon;
+    return about * horizon;
   }
 
 
@@ -131,10 +117,8 @@ namespace PeriDeal
   {
     for (Way &way : ways)
       {
-        const Tensor<1, dim> from =
-          middle - (way.points.back() + knob_forward * horizon * way.direction);
-        const double part = from.norm_square() / (reach() * reach());
-        if (part < 1. && from * way.direction > -knob_back * reach())
+        const double part = (middle - way.points.back()).norm_square() / (reach() * reach());
+        if (part < 1.)
           way.tension += (1. - part) * (1. - part) * moment / xi.norm_square() *
                          symmetrize(outer_product(xi, xi));
       }
@@ -171,11 +155,11 @@ namespace PeriDeal
             {
               const Point<2> &p        = way.points[k];
               const Point<2>  q        = k + 1 < way.points.size() ? way.points[k + 1] :
-                                                                     p + ahead() * horizon * way.direction;
+                                                                     p + ahead * horizon * way.direction;
               const double    distance = distance_to(middle, p, q);
               if (distance < horizon && part_at_crossing(ends.first, ends.second, p, q) >= 0.)
                 return true;
-              is_near = is_near || distance < aside() * horizon;
+              is_near = is_near || distance < aside * horizon;
             }
         return !is_near;
       }
@@ -190,7 +174,7 @@ namespace PeriDeal
     if constexpr (dim == 2)
       for (Way &way : ways)
         {
-          const Point<2> p = way.points.back(), q = p + ahead() * horizon * way.direction;
+          const Point<2> p = way.points.back(), q = p + ahead * horizon * way.direction;
           double         most = 0.;
           for (const Ends &ends : breaking)
             most = std::max(most, part_at_crossing(ends.first, ends.second, p, q));

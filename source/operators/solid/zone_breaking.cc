@@ -398,9 +398,7 @@ namespace PeriDeal
     std::size_t &n_first = kept_zone.n_broken;
     // Pairs by the key of their first node and the place of the second one in its row, which is
     // that of all members of the family: the same on all processes.
-    so_far.exchange(archive);
-    if (criterion && criterion->paths())
-      criterion->paths()->exchange(archive);
+    this->exchange_history(archive);
     unsigned long long n_kept = n_first;
     archive.exchange("broken at first", n_kept);
     Vector now(nodes.partitioner()), at_first_zone(now);

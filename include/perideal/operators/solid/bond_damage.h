@@ -103,6 +103,14 @@ namespace PeriDeal
       find();
     }
 
+    /** What has broken and the ways of cracks. Collective. */
+    void exchange_history(Archive &archive)
+    {
+      so_far.exchange(archive);
+      if (criterion && criterion->paths())
+        criterion->paths()->exchange(archive);
+    }
+
     /** Ways of cracks, if there are any, look across the tension. Collective. */
     template <typename AddTensions>
     void turn_paths(const AddTensions &add_tensions)

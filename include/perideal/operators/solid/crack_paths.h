@@ -60,7 +60,7 @@ namespace PeriDeal
     /** The bond crosses a way or what lies ahead of it, or is near none. */
     bool may_break(const Ends &ends) const;
 
-    /** The ways go on to where the foremost of these bonds, which break now, crosses. Collective. */
+    /** Ways go on to where the foremost of these bonds, which break now, crosses. Collective. */
     void advance(const std::vector<Ends> &breaking, const MPI_Comm communicator);
 
     /** Collective. */
