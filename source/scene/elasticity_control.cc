@@ -62,7 +62,7 @@ namespace PeriDeal
       "`auto` is in motion.";
     declare("Crack direction", EntryType::choice, "bonds", "", {"bonds", "mean tension"}) =
       "Two dimensions only, of bodies at rest whose bonds break: where cracks of section `Cracks` go as they grow, wherever bonds are stretched too far (`bonds`), or straight across the "
-      "largest tension, a mean over the bonds within a horizon of the tip (`mean tension`): then of the bonds within two horizons of a crack those alone break that lie in its way. "
+      "largest tension, a mean over the bonds about the tip (`mean tension`): then of the bonds within two horizons of a crack those alone break that lie in its way. "
       "So its direction hardly depends on that of the rows of nodes.";
     parse();
   }
