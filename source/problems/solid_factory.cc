@@ -298,7 +298,8 @@ namespace PeriDeal
       if constexpr (dim == 2)
         {
           if (!scene.material.breaks() || !scene.elasticity.is_static() ||
-              scene.elasticity.breaks_in_motion() || !scene.domain.has_lattice())
+              scene.elasticity.breaks_in_motion() || !scene.domain.has_lattice() ||
+              scene.elasticity.text("Crack direction") == "mean tension")
             return;
           for (unsigned int k = 0; k < scene.cracks.cracks.size(); ++k)
             {

@@ -60,6 +60,10 @@ namespace PeriDeal
       "Of bodies at rest whose bonds break, `in motion`: once the first bonds have broken, the others break in a damped motion from equilibrium to equilibrium; or `at rest`, "
       "in one equilibrium after the other, in each those whose stretch is at least 0.9 of the largest. Then slow cracks are drawn to the rows of the lattice. "
       "`auto` is in motion.";
+    declare("Crack direction", EntryType::choice, "bonds", "", {"bonds", "mean tension"}) =
+      "Two dimensions only, of bodies at rest whose bonds break: where cracks of section `Cracks` go as they grow, wherever bonds are stretched too far (`bonds`), or straight across the "
+      "largest tension, a mean over the bonds about the tip (`mean tension`): then of the bonds within two horizons of a crack those alone break that lie in its way. "
+      "So its direction hardly depends on that of the rows of nodes.";
     parse();
   }
 
@@ -104,6 +108,12 @@ namespace PeriDeal
     refuse(is_given("Breaking") && !is_static(),
            "Breaking",
            "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
+    refuse(is_given("Crack direction") && !is_static(),
+           "Crack direction",
+           "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
+    refuse(text("Crack direction") == "mean tension" && dim != 2,
+           "Crack direction",
+           "found 'mean tension', which is for 'Dimension = 2'. Leave the entry out.");
     refuse(
       contact_is_asked() && has_full_kinematics() && is_static(),
       "Contact",

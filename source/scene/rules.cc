@@ -331,6 +331,28 @@ namespace PeriDeal
   }
 
 
+  /** Cracks that go across a mean of the tension about their tips. */
+  template <int dim>
+  void refuse_crack_direction(const Scene<dim> &scene)
+  {
+    scene.elasticity.refuse(
+      scene.elasticity.is_given("Crack direction") && !scene.material.breaks(),
+      "Crack direction",
+      "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
+    const bool has_planes_of_symmetry = !scene.boundary_conditions.symmetry.empty();
+    scene.elasticity.refuse(
+      scene.elasticity.text("Crack direction") == "mean tension" &&
+        (scene.cracks.cracks.empty() || scene.cracks.change() || has_planes_of_symmetry),
+      "Crack direction",
+      std::string("found 'mean tension', which is for ") +
+        (has_planes_of_symmetry ?
+           "whole bodies, but there is 'Symmetry' in section 'Boundary conditions'. Compute the whole body, or leave the entry out." :
+         scene.cracks.cracks.empty() ?
+           "what grows from cracks of section 'Cracks', but there is none. Leave the entry out." :
+           "cracks that grow as bonds break, but those of section 'Cracks' change by themselves. Leave one of them out."));
+  }
+
+
   template <int dim>
   void refuse_deformation(const Scene<dim> &scene)
   {
@@ -357,6 +379,7 @@ namespace PeriDeal
       scene.elasticity.is_given("Breaking") && !material.breaks(),
       "Breaking",
       "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
+    refuse_crack_direction(scene);
     scene.elasticity.refuse(
       scene.elasticity.is_given("Breaking") && material.softens(),
       "Breaking",

@@ -311,6 +311,11 @@ def breaking():
     for way in ("in motion", "at rest"):
         compare(f"breaking {way}", "prm/fracture/centre_crack.prm", {**fracture.COARSE, "Elasticity/Breaking": way},
                 {"totals: broken bonds": 0, "totals: energy dissipated": 1e-9, "totals: strain energy": 1e-9}, ranks=(4,), least_broken=50)
+    for model, cells in ((PD, "24, 24"), (COUPLED, "25, 25")):
+        compare(f"across the mean tension, {model}", "prm/fracture/oblique_crack_growth.prm",
+                {"Models": model, "Domain/Cells": cells, **({"Domain/Nodes": "vertices", "Coupling/Zone": "follow"} if model == COUPLED else {}),
+                 "Elasticity/Crack direction": "mean tension", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-12", "Time/End time": "0.8", "Output/Write at": "", "Output/Fields": "none"},
+                {"totals: broken bonds": 0, "totals: energy dissipated": 1e-7}, ranks=(2, 4), least_broken=50)
     followed = {"totals: broken bonds": 0, "totals: energy dissipated": 1e-8, f"totals: {following_zone.JOINING}": 1e-6, "totals: strain energy": 1e-8}
     blended = {**blended_breaking.COARSE, "Time/End time": "0.6", "Elasticity/Breaking": "at rest", "Coupling/Certificate": "false"}
     for what, scene, overrides in (("zone that follows", following_zone.SCENE, following_zone.COARSE), ("the same in space", "prm/fracture/cracked_block.prm", following_zone.BLOCK),

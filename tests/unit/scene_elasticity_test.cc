@@ -216,6 +216,9 @@ Material/Phases/Thermal expansion=rim: -1e-5 =>
 Material/Fracture energy=10 & Material/Critical stretch=1e-3 => Material/Critical stretch | 'Fracture energy' is given
 Material/Fracture energy=0 => Material/Fracture energy | greater than 0
 Material/Critical stretch=t => Material/Critical stretch | depends on t
+Elasticity/Crack direction=mean tension => Elasticity/Crack direction | bonds that break
+Material/Critical stretch=1e-3 & Elasticity/Crack direction=mean tension => Elasticity/Crack direction | there is none
+Material/Critical stretch=1e-3 & Elasticity/Crack direction=mean tension & Elasticity/Solver=dynamics => Elasticity/Crack direction | bodies at rest
 Elasticity/Temperature change=10 => Elasticity/Temperature change | no effect | 'Thermal expansion' in section 'Material' is 0
 Elasticity/Temperature change=t & Material/Thermal expansion=1 => Elasticity/Temperature change | depends on t
 Elasticity/Temperature change=x & Material/Thermal expansion=1e-5 =>

@@ -199,6 +199,25 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BondBreaking<dim>::add_tensions(CrackPaths<dim> &paths, const double *u) const
+  {
+    const Nodes<dim> &nodes = bonds.families.nodes();
+    const double      reach = paths.reach() + 0.5 * bonds.families.weights().horizon();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      if (paths.any_tip_near(nodes.position(i), reach))
+        bonds.rows.for_each_in_body(i, [&](const auto &bond) {
+          if (!bonds.rows.is_whole(bond.number))
+            return;
+          const Tensor<1, dim> xi = bonds.ends.vector(i, bond.neighbor);
+          paths.add(nodes.position(i) + 0.5 * xi,
+                    xi,
+                    bonds.rows.stiffnesses(i, bond.neighbor) *
+                      bonds.kinematics.extension_moment(u, i, bond));
+        });
+  }
+
+
+  template <int dim>
   double BondBreaking<dim>::stretch_over_critical(const Vector &u)
   {
     if (!criterion)
@@ -207,6 +226,7 @@ namespace PeriDeal
     double most = 0.;
     u.update_ghost_values();
     bonds.ends.find(u.begin());
+    this->turn_paths([&](auto &paths) { add_tensions(paths, u.begin()); });
     for (unsigned int i = 0; i < bonds.families.nodes().n_owned(); ++i)
       bonds.rows.for_each(i, [&](const auto &bond) {
         if (!bonds.rows.is_whole(bond.number) || !bonds.ends.may_break(bond.neighbor))
@@ -290,10 +310,13 @@ namespace PeriDeal
   {
     if (!criterion)
       return {};
-    overstretched.clear();
     u.update_ghost_values();
-    find_inside(u.begin());
-    find_beyond(u.begin());
+    this->find_all(
+      [&] {
+        find_inside(u.begin());
+        find_beyond(u.begin());
+      },
+      [&](auto &paths) { add_tensions(paths, u.begin()); });
     u.set_ghost_state(false);
     // Those that soften do so a little each.
     if (!this->select(criterion->softens() ? 0. : share))
@@ -354,7 +377,7 @@ namespace PeriDeal
     if (!changes)
       return;
     if (criterion)
-      so_far.exchange(archive);
+      this->exchange_history(archive);
     const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
     if (criterion && criterion->softens())
       exchange_histories(bonds.rows, archive, keys, BondTable<dim>::n_softness);

@@ -8,6 +8,7 @@
 #include <perideal/operators/solid/bond_damage.h>
 #include <perideal/operators/solid/bond_strengths.h>
 #include <perideal/operators/solid/softening_strengths.h>
+#include <perideal/operators/solid/mean_tension_criterion.h>
 
 #include <algorithm>
 #include <utility>
@@ -20,10 +21,13 @@ namespace PeriDeal
   {
     /** The one list of criteria, each by its entries; null: no bonds break. */
     template <int dim>
-    std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds)
+    std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds,
+                                                       const BodyParameters<dim> &body)
     {
       if (bonds.material.softens())
         return std::make_unique<SofteningStrengths<dim>>(bonds);
+      if (bonds.material.breaks() && body.elasticity.text("Crack direction") == "mean tension")
+        return std::make_unique<MeanTensionCriterion<dim>>(bonds, body.cracks.cracks);
       if (bonds.material.breaks())
         return std::make_unique<BondStrengths<dim>>(bonds);
       return nullptr;
@@ -37,7 +41,7 @@ namespace PeriDeal
                               std::function<CrossingEnergy(unsigned int)> &&crossing_energy)
     : families(families)
     , body(body)
-    , criterion(criterion_of<dim>({families, body.material, std::move(crossing_energy)}))
+    , criterion(criterion_of<dim>({families, body.material, std::move(crossing_energy)}, body))
   {}
 
 
@@ -57,7 +61,22 @@ namespace PeriDeal
       overstretched.end());
     if (!so_far.places.elsewhere)
       keep_places(most);
+    lead_paths_on();
     return true;
+  }
+
+
+  template <int dim>
+  void BondDamage<dim>::lead_paths_on()
+  {
+    CrackPaths<dim> *const paths = criterion->paths();
+    if (!paths)
+      return;
+    const Nodes<dim>                           &nodes = families.nodes();
+    std::vector<typename CrackPaths<dim>::Ends> ends;
+    for (const Overstretched &bond : overstretched)
+      ends.emplace_back(nodes.position(bond.node), nodes.position(bond.neighbor));
+    paths->advance(ends, nodes.communicator());
   }
 
 

@@ -110,18 +110,38 @@ namespace PeriDeal
 
 
   template <int dim>
+  void ZoneBreaking<dim>::add_tensions(CrackPaths<dim> &paths, const Vector &u) const
+  {
+    const double reach = paths.reach() + 0.5 * zone.families_of_bonds().weights().horizon();
+    for (const unsigned int i : bonds.nodes())
+      if (paths.any_tip_near(nodes.position(i), reach))
+        bonds.for_each(i, [&](const auto &bond, const Tensor<1, dim> &xi) {
+          if (bond.strength == 0.)
+            return;
+          double change = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            change +=
+              xi[d] * (u.local_element(dim * bond.neighbor + d) - u.local_element(dim * i + d));
+          paths.add(nodes.position(i) + 0.5 * xi,
+                    xi,
+                    bonds.spring(i, bond) * bond.strength * change * xi.norm_square());
+        });
+  }
+
+
+  template <int dim>
   std::vector<NodePair> ZoneBreaking<dim>::find_overstretched(const Vector &u, const double share)
   {
     if (!criterion)
       return {};
     const auto &layout = *nodes.partitioner();
-    overstretched.clear();
-    visit_measures(u, [&](const auto i, const auto j, const BondMeasure &found) {
+    const auto  add    = [&](const auto i, const auto j, const BondMeasure &found) {
       if (!found.exceeds() || !zone.may_break(i, j))
         return;
       const bool ascends = layout.local_to_global(i) < layout.local_to_global(j);
       overstretched.push_back({0, ascends ? i : j, ascends ? j : i, 2, found.over_limit()});
-    });
+    };
+    this->find_all([&] { visit_measures(u, add); }, [&](auto &paths) { add_tensions(paths, u); });
     if (!this->select(share))
       return {};
     std::vector<NodePair> own;
@@ -140,6 +160,7 @@ namespace PeriDeal
       return 0.;
     double most = 0.;
     u.update_ghost_values();
+    this->turn_paths([&](auto &paths) { add_tensions(paths, u); });
     visit_measures(u, [&](const auto i, const auto j, const BondMeasure &found) {
       if (found.exceeds(most) && zone.may_break(i, j))
         most = found.over_limit();
@@ -377,7 +398,7 @@ namespace PeriDeal
     std::size_t &n_first = kept_zone.n_broken;
     // Pairs by the key of their first node and the place of the second one in its row, which is
     // that of all members of the family: the same on all processes.
-    so_far.exchange(archive);
+    this->exchange_history(archive);
     unsigned long long n_kept = n_first;
     archive.exchange("broken at first", n_kept);
     Vector now(nodes.partitioner()), at_first_zone(now);

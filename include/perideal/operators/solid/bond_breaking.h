@@ -119,6 +119,7 @@ namespace PeriDeal
     using BondDamage<dim>::overstretched;
     using BondDamage<dim>::loaded_side;
 
+    void        add_tensions(CrackPaths<dim> &paths, const double *u) const;
     void        watch_limits(); // of full kinematics
     BondMeasure measure(const double         *u,
                         const unsigned int    i,

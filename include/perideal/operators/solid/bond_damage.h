@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/base/types.h>
 #include <perideal/operators/solid/break_history.h>
 #include <perideal/operators/solid/damage_criterion.h>
@@ -82,6 +84,46 @@ namespace PeriDeal
      */
     bool select(const double share);
 
+    /**
+     * Leave all bonds beyond their limits in BondDamage::overstretched. Ways of cracks are turned
+     * first where there are some. Collective.
+     *
+     * @param find adds those of this process @param add_tensions of whole bonds to CrackPaths
+     */
+    template <typename Find, typename AddTensions>
+    void find_all(const Find &find, const AddTensions &add_tensions)
+    {
+      overstretched.clear();
+      find();
+      const double any = overstretched.empty() ? 0. : 1.;
+      if (!criterion->paths() ||
+          dealii::Utilities::MPI::max(any, families.nodes().communicator()) == 0.)
+        return;
+      turn_paths(add_tensions);
+      overstretched.clear();
+      find();
+    }
+
+    /** What has broken and the ways of cracks. Collective. */
+    void exchange_history(Archive &archive)
+    {
+      so_far.exchange(archive);
+      if (criterion && criterion->paths())
+        criterion->paths()->exchange(archive);
+    }
+
+    /** Ways of cracks, if there are any, look across the tension. Collective. */
+    template <typename AddTensions>
+    void turn_paths(const AddTensions &add_tensions)
+    {
+      CrackPaths<dim> *const paths = criterion->paths();
+      if (!paths)
+        return;
+      paths->begin();
+      add_tensions(*paths);
+      paths->turn(families.nodes().communicator());
+    }
+
     const Families<dim>                        &families;
     const BodyParameters<dim>                  &body;
     std::unique_ptr<const DamageCriterion<dim>> criterion; // null: nothing breaks
@@ -90,6 +132,7 @@ namespace PeriDeal
     std::vector<unsigned int> loaded_side; // SolidLoads::sides_nearby(); empty: none
 
   private:
+    void lead_paths_on();
     void keep_places(const double most);
   };
 } // namespace PeriDeal

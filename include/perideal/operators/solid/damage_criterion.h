@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/bonds/families.h>
+#include <perideal/operators/solid/crack_paths.h>
 #include <perideal/scene/material.h>
 
 #include <functional>
@@ -116,5 +117,14 @@ namespace PeriDeal
     virtual const std::vector<double> &of_nodes() const = 0;
 
     virtual std::size_t memory_consumption() const = 0;
+
+    /**
+     * Ways of cracks, beside which no bond is above its limit: to be turned by what whole bonds
+     * bear where some are, and led on by those that break. Null: bonds break one by one.
+     */
+    virtual CrackPaths<dim> *paths() const
+    {
+      return nullptr;
+    }
   };
 } // namespace PeriDeal

@@ -150,6 +150,16 @@ namespace PeriDeal
       return bond.vector > vectors.size() / 2;
     }
 
+    /** k_i/x^2 + k_j/x^2. */
+    double spring(const unsigned int i, const Bond &bond) const
+    {
+      return coefficients.stiffness.size() == 0 ?
+               1. :
+               LinearPeridynamicSolid::spring(coefficients.stiffness.local_element(i) +
+                                                coefficients.stiffness.local_element(bond.neighbor),
+                                              vectors[bond.vector].norm_square());
+    }
+
     /** Of this process: each whole bond is counted half in a row. */
     double n_whole() const;
 
@@ -179,16 +189,6 @@ namespace PeriDeal
       std::size_t  first = 0; // among all bonds
       unsigned int n     = 0;
     };
-
-    /** k_i/x^2 + k_j/x^2. */
-    double spring(const unsigned int i, const Bond &bond) const
-    {
-      return coefficients.stiffness.size() == 0 ?
-               1. :
-               LinearPeridynamicSolid::spring(coefficients.stiffness.local_element(i) +
-                                                coefficients.stiffness.local_element(bond.neighbor),
-                                              vectors[bond.vector].norm_square());
-    }
 
     /** c_ij. @param u null: at rest @param thermal null: without thermal strains */
     double change(const unsigned int i,

@@ -139,6 +139,8 @@ namespace PeriDeal
       double   time;
     };
 
+    void add_tensions(CrackPaths<dim> &paths, const Vector &u) const;
+
     /** take(i, j, measure) for the whole bonds that start at owned nodes. */
     template <typename Take>
     void visit_measures(const Vector &u, const Take &take) const;
