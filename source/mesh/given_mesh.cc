@@ -12,6 +12,7 @@
 #include <perideal/mesh/fitted_plate.h>
 #include <perideal/mesh/given_mesh.h>
 #include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/cell_lines.h>
 #include <perideal/scene/msh_file.h>
 
 #include <algorithm>
@@ -312,6 +313,30 @@ namespace PeriDeal
           return {};
         }
     }
+
+
+    template <int dim>
+    GivenMesh<dim> mesh_of_lines(const Domain<dim> &domain)
+    {
+      const auto                lines = cell_lines(domain);
+      std::vector<unsigned int> n(domain.cells.begin(), domain.cells.end());
+      Point<dim>                last;
+      for (unsigned int d = 0; d < dim; ++d)
+        last[d] = n[d];
+      Triangulation<dim> mesh;
+      GridGenerator::subdivided_hyper_rectangle(mesh, n, Point<dim>(), last);
+      GridTools::transform(
+        [&](const Point<dim> &number) {
+          Point<dim> p;
+          for (unsigned int d = 0; d < dim; ++d)
+            p[d] = lines[d][std::lround(number[d])];
+          return p;
+        },
+        mesh);
+      if constexpr (dim > 1)
+        set_sides_of_plate(domain, mesh);
+      return described(mesh);
+    }
   } // namespace
 
 
@@ -322,7 +347,7 @@ namespace PeriDeal
       return mesh_of_file<dim>(domain.files.mesh, domain.files.folder, communicator);
     if (domain.shape == Shape::generator)
       return mesh_of_generator(domain);
-    return mesh_of_plate(domain);
+    return domain.is_box() ? mesh_of_lines(domain) : mesh_of_plate(domain);
   }
 
 

@@ -332,7 +332,7 @@ namespace PeriDeal
       given = coarse_mesh(scene, communicator, notes);
     CoarseMesh<dim> &coarse = given.coarse;
     notes.insert(notes.end(), domain.notes.begin(), domain.notes.end());
-    if (domain.shape != Shape::box && (n_refinements == 0 || !domain.has_lattice()))
+    if (!domain.has_lattice() || (domain.shape != Shape::box && n_refinements == 0))
       require_resolved(coarse, cut);
     AssertThrow(n_refinements >= domain.coarsening.times,
                 UserError("'Coarsening' in section 'Domain' is " +

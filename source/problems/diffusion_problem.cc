@@ -160,6 +160,59 @@ namespace PeriDeal
     }
 
 
+    /** Applications of K by an expansion over each span, to round-off where it begins roughly. */
+    double stages_of_chebyshev(const double largest_eigenvalue, const std::vector<double> &ends)
+    {
+      constexpr double of_root = 5.4;
+      double           sum = 0., before = 0.;
+      for (const double end : ends)
+        {
+          sum += of_root * std::sqrt(largest_eigenvalue * (end - before));
+          before = end;
+        }
+      return sum;
+    }
+
+
+    /**
+     * What adaptive implicit steps cost where the start is rough, in applications of K: so many
+     * steps, each with some 15 iterations of 15 applications (measured with quadratic elements on
+     * graded meshes, crank nicolson).
+     */
+    double cost_of_implicit_steps(const double tolerance)
+    {
+      constexpr double of_step = 220., n_steps = 2.1;
+      return of_step * n_steps / std::sqrt(tolerance);
+    }
+
+
+    /**
+     * The stepper of a run: `auto` is choose_stepper()'s, and implicit steps for finite elements so
+     * stiff that the stages of an expansion over the spans between outputs cost clearly more.
+     * Collective.
+     */
+    template <int dim>
+    std::string stepper_of_run(const Scene<dim>          &scene,
+                               const DiffusionOperator   &op,
+                               const std::vector<double> &write_times)
+    {
+      constexpr double   clearly = 1.5;
+      const TimeControl &time    = scene.time;
+      if (time.stepper != "auto" || time.time_step > 0. || choose_stepper(op) != "chebyshev" ||
+          !op.surrogate_is_exact() || scene.cracks.change())
+        return time.stepper;
+      std::vector<double> ends;
+      for (const double t : write_times)
+        if (t > 0. && t < time.end_time)
+          ends.push_back(t);
+      ends.push_back(time.end_time);
+      return stages_of_chebyshev(op.spectrum().sharp, ends) >
+                 clearly * cost_of_implicit_steps(time.tolerance) ?
+               "crank nicolson" :
+               time.stepper;
+    }
+
+
     /** Bounds of the spectrum, and what explicit steps are stable with them. */
     std::string describe_stable_steps(const Spectrum &spectrum)
     {
@@ -279,7 +332,9 @@ namespace PeriDeal
   {
     Timings::Scope scope(this->timings, "stepper");
     with_formulas(this->dofs().get_communicator(), [&] {
-      stepper = PeriDeal::make_stepper(scene.time.stepper, op(), this->stepper_options());
+      stepper = PeriDeal::make_stepper(stepper_of_run(scene, op(), scene.output.write_times),
+                                       op(),
+                                       this->stepper_options());
     });
     check_stepper(stepper->name(), scene.time, op().spectrum().sharp * scene.time.end_time);
     if (scene.guards.goes_on())

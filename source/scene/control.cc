@@ -40,8 +40,8 @@ namespace PeriDeal
              "sdirk2",
              "verlet",
              "newmark"}) =
-      "Time integration: `auto` picks chebyshev (constant loads, symmetric operator), else rkc2, and "
-      "sdirk2 for a consistent capacity. Of these three and bdf2 and crank nicolson the steps "
+      "Time integration: `auto` picks chebyshev (constant loads, symmetric operator; crank nicolson for finite elements that are very stiff), else rkc2, and "
+      "sdirk2 for a consistent capacity. Of these and bdf2 the steps "
       "adapt to Tolerance; euler and rk4 have a fixed step. Motion (elasticity with `Solver = dynamics`): verlet (explicit; `auto`) and newmark "
       "(implicit, average acceleration), both with a fixed step.";
     declare_if_given(time_step, "Time step", "auto", "time", Bounds::positive) =

@@ -9,6 +9,7 @@
 #include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/boundary_conditions.h>
+#include <perideal/scene/cell_lines.h>
 #include <perideal/scene/domain.h>
 #include <perideal/scene/lists.h>
 
@@ -77,6 +78,9 @@ namespace PeriDeal
       "Number of cells of the box, one number per direction.";
     declare("Node spacing", EntryType::text, "", "length") =
       "Edge length of the cells, instead of Cells. It must divide every edge of the box.";
+    declare("Cell lines", EntryType::list, "", "length") =
+      "Of a box, instead of both, where lines or planes between cells of unequal size lie: the coordinates for each direction, from one side to the other, directions separated by `;`, as `0, 0.3, 1 ; 0, 1`. "
+      "`Refinements` halves these cells. It is a mesh that is no lattice.";
     declare("Nodes", EntryType::choice, "auto", "", {"vertices", "cell centers", "auto"}) =
       "Where the peridynamic nodes sit: `auto` is cell centers with `Shape = image`, else vertices. Finite elements use the vertices "
       "in any case.";
@@ -132,7 +136,7 @@ namespace PeriDeal
       "edges, and in that zone likewise. `corners`: besides, at corners of the body that a mesh has, where its sides open to more than 200 degrees inside, and where on a smooth side given values end. "
       "Beyond, there are at least two cells of each size.";
     declare(coarsening.refinements, "Refinements", "0") =
-      "How often the cells of a mesh file, of a generator or of a plate with fitted rims are halved in each direction. Round sides of the latter two stay round.";
+      "How often the cells of a mesh file, of a generator, of a plate with fitted rims or between `Cell lines` are halved in each direction. Round sides of the latter two stay round.";
     declare(holes.rims, "Rims", "stairs", {"stairs", "fitted"}) =
       "Of holes in a box or a plate: `stairs` removes cells of the lattice; `fitted` lets the mesh follow their rims, a row of cells around each hole and `Refinements` halving them all. A mesh that is no lattice needs a `Horizon` that is a length for bonds.";
     declare(files.generator, "Generator", "") =
@@ -150,7 +154,8 @@ namespace PeriDeal
   {
     Tensor<1, dim> h;
     for (unsigned int d = 0; d < dim; ++d)
-      h[d] = (upper[d] - lower[d]) / cells[d];
+      h[d] = (upper[d] - lower[d]) / cells[d] /
+             (is_box() && !has_lattice() ? std::exp2(coarsening.refinements) : 1.);
     return h;
   }
 
@@ -353,6 +358,27 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** `Cell lines`: the mesh is no lattice, as with rims that are fitted. */
+    template <int dim>
+    void take_lines(Domain<dim> &domain)
+    {
+      const std::string entry = "Cell lines";
+      if (domain.text(entry).empty())
+        return;
+      domain.refuse(dim == 1 || !domain.is_box() || !domain.text("Holes").empty() ||
+                      domain.has_extra_layers(),
+                    entry,
+                    "is for boxes in 2 and 3 dimensions, without 'Holes' and 'Extra layers'.");
+      const auto lines = cell_lines(domain);
+      for (unsigned int d = 0; d < dim; ++d)
+        domain.cells[d] = lines[d].size() - 1;
+      domain.holes.rims = Rims::fitted;
+    }
+  } // namespace
+
+
   template <int dim>
   void Domain<dim>::parse()
   {
@@ -387,6 +413,7 @@ namespace PeriDeal
         parse_cells();
       }
     parse_extra_layers();
+    take_lines(*this);
     parse_hole();
     holes.has_one = shape == Shape::plate_with_hole;
     parse_listed_holes();
@@ -449,7 +476,7 @@ namespace PeriDeal
              "is given, but 'Shape' is '" + text("Shape") + "', not 'generator'.");
     if (shape == Shape::generator)
       choice_of(files.generator, generator_names(), where("Generator"));
-    refuse(holes.fitted() && shape != Shape::plate_with_hole,
+    refuse(text("Rims") == "fitted" && shape != Shape::plate_with_hole,
            "Rims",
            "is 'fitted', but there is no hole: give 'Holes', or 'Shape = plate with hole'.");
     refuse(holes.fitted() && has_extra_layers(),

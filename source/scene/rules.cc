@@ -506,13 +506,15 @@ namespace PeriDeal
         return "motion with cracks, or with a horizon that is a length";
       if (scene.material.law.kind != SolidLaw::linear)
         return "another 'Law' than 'linear' (section 'Material')";
-      if (!scene.time.steady && scene.deforms && !moves)
-        return "bodies at rest whose loads change with time";
+      if (!scene.time.steady && scene.deforms && !moves &&
+          (scene.cracks.change() || scene.peridynamics.horizon > 0.))
+        return "bodies at rest whose loads change with time, with cracks that grow or a horizon that is a length";
       if (scene.cracks.change() && (scene.time.steady || scene.peridynamics.horizon > 0.))
         return "cracks that grow or change ('Growth', 'Transmission' in section 'Cracks') in a steady state, or with a "
                "horizon that is a length";
-      if (scene.elasticity.computes_temperature)
-        return "a computed temperature ('Temperature change' in section 'Elasticity')";
+      if (scene.elasticity.computes_temperature &&
+          (scene.warms_slowly() || !scene.cracks.cracks.empty()))
+        return "a computed temperature ('Temperature change' in section 'Elasticity') that changes with time, or with cracks";
       if (scene.material.breaks())
         return "bonds that break ('Fracture energy', 'Critical stretch' in section 'Material')";
       if (scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)

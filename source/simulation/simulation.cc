@@ -31,8 +31,7 @@
 #include "run_output.h"
 #include "summary_parts.h"
 
-// What changes in a run besides its solutions: the mesh, how far it is; and keeping all of it, or
-// looking at it before it is written.
+// What changes in a run: the mesh, how far it is; keeping that, or looking before it is written.
 
 namespace PeriDeal
 {
@@ -396,13 +395,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<double> Simulation<dim>::stops_until(const double t) const
-  {
-    return stops_between<dim>(problems, place.now, t);
-  }
-
-
-  template <int dim>
   void Simulation<dim>::advance_to(const double t)
   {
     if (scene.time.steady)
@@ -411,7 +403,7 @@ namespace PeriDeal
       {
         if (place.stop == place.stops.size())
           {
-            place.stops = stops_until(t);
+            place.stops = stops_between<dim>(problems, place.now, t);
             place.stop  = 0;
           }
         for (const double stop = place.stops[place.stop]; place.now < stop;)
@@ -653,9 +645,9 @@ namespace PeriDeal
     begin();
     exchange(saved);
     find_next_output();
-    wall_time_before = saved.header().wall_time;
+    place.wall_time_before = saved.header().wall_time;
     progress.line("resumed at t = " + number_text(saved.header().time) + ", after " +
-                  readable_duration(wall_time_before));
+                  readable_duration(place.wall_time_before));
     for (const std::string &note : output->files().notes) // also at the end, with all others
       {
         progress.note(note);
@@ -717,12 +709,13 @@ namespace PeriDeal
     const List all = all_problems();
     if (place.problem < all.size()) // the others have been looked at where they got to
       guards->look(*all[place.problem], t);
-    const double      before = clock->elapsed();
-    const std::string failure =
-      output->files().write_checkpoint(t, wall_time_before + before, [this](Archive &archive) {
-        exchange_mesh(archive);
-        exchange(archive);
-      });
+    const double      before  = clock->elapsed();
+    const std::string failure = output->files().write_checkpoint(t,
+                                                                 place.wall_time_before + before,
+                                                                 [this](Archive &archive) {
+                                                                   exchange_mesh(archive);
+                                                                   exchange(archive);
+                                                                 });
     clock->kept(clock->elapsed() - before);
     if (need == CheckpointClock::Need::stop)
       stop(t, failure);
@@ -784,11 +777,23 @@ namespace PeriDeal
     require_memory(scene, communicator);
     build();
     begin();
+    const bool keeps = !scene.time.steady && !scene.cracks.change() && !adaptation.grading &&
+                       companions().empty() && problems.size() == 1 &&
+                       (!tells_at_stops() || count_stops().second == output_times().size());
+    const auto keep = [&] {
+      if (!keeps)
+        return;
+      kept.emplace_back();
+      problems[0]->exchange(kept.back());
+      kept.back().load();
+    };
     if (!scene.time.steady)
       settle();
+    keep();
     for (const double t : output_times())
       {
         advance_to(t);
+        keep();
         if (see)
           see(t);
       }
@@ -814,13 +819,26 @@ namespace PeriDeal
     output->adopt(std::move(files));
     nlohmann::ordered_json summary;
     with_orderly_end(output->files(), progress, [&] {
-      if (!scene.time.steady)
-        summary = compute(more, tell);
-      else
+      if (!has_kept())
+        return void(summary = compute(more, tell));
+      auto       state   = kept.begin();
+      const auto go_back = [&](const double t) {
+        place.now = t;
+        if (scene.time.steady)
+          return;
+        problems[0]->exchange(*state++);
+        if (tells_at_stops())
+          add_totals(t);
+      };
+      go_back(0.);
+      if (!scene.time.steady && scene.output.starts_at_zero())
+        write_fields(0.);
+      for (const double t : output_times())
         {
-          write_output(0.);
-          summary = finish(more, tell);
+          go_back(t);
+          write_output(t);
         }
+      summary = finish(more, tell);
     });
     output->close();
     tell.end();

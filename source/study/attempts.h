@@ -12,6 +12,7 @@
 
 #include "body_of_choice.h"
 #include "formula_scan.h"
+#include "lines_of_choice.h"
 #include "material_planes.h"
 
 namespace PeriDeal
@@ -38,8 +39,9 @@ namespace PeriDeal
    * the classical solution:
    *
    * - without cracks quadratic elements on a lattice;
-   * - with cracks along faces of a lattice the same with the crack on faces, graded to its ends, so
-   *   that the cells there are the cube of those far away;
+   * - with cracks along the axes the same with the crack on faces, graded to its ends, so that the
+   *   cells there are the cube of those far away: on a lattice, or between lines of unequal
+   *   distance where a lattice with the cracks on its faces would have many more cells;
    * - with others, diffusion: linear elements, pairs of nodes in cut cells, scaled, fine along the
    *   cracks, so that the cells there are the square of those far away; elastic bodies: bonds
    *   around the cracks on such a mesh.
@@ -81,6 +83,12 @@ namespace PeriDeal
     /** How the cost grows with the fineness. Not collective. */
     double growth_of_cost() const;
 
+    /** Finer meshes follow the body better. Not collective. */
+    bool is_round() const
+    {
+      return is_given() && body.given->is_round;
+    }
+
     /** In a sentence, why this family. Not collective. */
     std::string reason() const;
 
@@ -106,6 +114,13 @@ namespace PeriDeal
       return family == Family::given || family == Family::given_pairs;
     }
 
+    /** A plate in 3D whose cells need not be halved: others are taken, not many times as many. */
+    bool grows_by_cells() const
+    {
+      return dim == 3 && family == Family::given && !body.settings.empty() &&
+             !body.given->has_corners && scene.cracks.cracks.empty();
+    }
+
     /** Halvings of the given mesh's cells. */
     unsigned int refinements(const double fineness) const;
     void         refine_given(const double fineness, Attempt &attempt) const;
@@ -123,6 +138,8 @@ namespace PeriDeal
     unsigned int with_points_on_planes(const unsigned int direction, const unsigned int n) const;
     void         set_mesh(const double fineness, Attempt &attempt) const;
     std::optional<CellCounts> on_faces(const double fineness) const;
+    std::optional<CellLines>  lines_for_cracks() const;
+    void                      set_lines(const double fineness, Attempt &attempt) const;
     double                    fineness_of(const CellCounts &cells) const;
 
     const BodyOfChoice<dim> &body;
@@ -132,7 +149,8 @@ namespace PeriDeal
     NeedsOfFormulas          needs;
     std::optional<std::vector<std::vector<double>>> planes; // of materials, to be on lines
     double                                          rough_order = 0.; // order_of_rough_places()
-    Family                                          family      = Family::whole;
+    std::optional<CellLines>                        lines; // of the coarsest mesh, not a lattice
+    Family                                          family = Family::whole;
     std::vector<double> first; // cells of the first mesh, of a family other than `bonds`
     double              first_fineness = 0.; // of the coarsest mesh; 0 until it is known
     double faces_unit = 0.; // fineness of the coarsest mesh that has the cracks on faces

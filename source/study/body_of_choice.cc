@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace PeriDeal
@@ -64,15 +65,34 @@ namespace PeriDeal
     }
 
 
+    /** Why no mesh can be made of a lattice that follows all rims, or nothing. */
+    template <int dim>
+    std::string obstacle_to_rims(const Domain<dim> &domain, const CellCounts &cells)
+    {
+      try
+        {
+          fitted_plate({domain.lower[0], domain.lower[1]},
+                       {domain.upper[0], domain.upper[1]},
+                       {{cells[0], cells[1]}},
+                       domain.holes.all(),
+                       domain.where("Rims"));
+          return "";
+        }
+      catch (const UserError &error)
+        {
+          return error.message();
+        }
+    }
+
+
     /** Cells of the coarsest lattice from which a mesh can be made that follows all rims. */
     template <int dim>
     CellCounts cells_of_fitted_plate(const Scene<dim> &scene)
     {
-      const Domain<dim>      &domain  = scene.domain;
-      const CrackedBox        wanted  = wanted_on_lines(scene);
-      const std::vector<Hole> holes   = domain.holes.all();
-      const Tensor<1, dim>    edges   = domain.upper - domain.lower;
-      const double            longest = *std::max_element(edges.begin_raw(), edges.end_raw());
+      const Domain<dim>   &domain  = scene.domain;
+      const CrackedBox     wanted  = wanted_on_lines(scene);
+      const Tensor<1, dim> edges   = domain.upper - domain.lower;
+      const double         longest = *std::max_element(edges.begin_raw(), edges.end_raw());
       // Cells are at most about twice as long as wide.
       const unsigned int n_least = std::ceil(longest / std::min(edges[0], edges[1])),
                          first = std::max(3u, n_least), step = std::max(1u, first / 16),
@@ -84,19 +104,9 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             cells.push_back(
               fitting_count(wanted, d, std::max(2l, std::lround(n * edges[d] / longest))));
-          try
-            {
-              fitted_plate({domain.lower[0], domain.lower[1]},
-                           {domain.upper[0], domain.upper[1]},
-                           {{cells[0], cells[1]}},
-                           holes,
-                           domain.where("Rims"));
-              return cells;
-            }
-          catch (const UserError &error)
-            {
-              reason = error.message();
-            }
+          reason = obstacle_to_rims(domain, cells);
+          if (reason.empty())
+            return cells;
         }
       reason = reason.substr(0, reason.find(" Choose more"));
       domain.refuse(
@@ -146,6 +156,31 @@ namespace PeriDeal
         "Entry 'Models': 'auto' does not choose for cracks across cells of elastic bodies other than a box "
         "('Shape' and 'Holes' in section 'Domain'). Name models instead: finite elements, "
         "peridynamics, coupled."));
+  }
+
+
+  template <int dim>
+  std::pair<CellCounts, double> BodyOfChoice<dim>::finer_plate(const double times) const
+  {
+    constexpr double   rounding = 0.25, more = 1.03;
+    constexpr unsigned most   = 100;
+    const auto        &coarse = scene->domain.cells;
+    CellCounts         cells(dim);
+    double             least = 1.;
+    double             now   = times;
+    for (unsigned int k = 0; k < most; ++k, now *= more)
+      {
+        least = std::numeric_limits<double>::max();
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            cells[d] = std::max<unsigned int>(coarse[d], std::ceil(coarse[d] * now - rounding));
+            least    = std::min(least, static_cast<double>(cells[d]) / coarse[d]);
+          }
+        if constexpr (dim > 1)
+          if (obstacle_to_rims(scene->domain, cells).empty())
+            break;
+      }
+    return {cells, least};
   }
 
 

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <perideal/scene/scene.h>
+#include <perideal/study/cracked_box.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "given_body.h"
@@ -21,6 +23,13 @@ namespace PeriDeal
      * can be; the others have their mesh. Throws UserError. Collective.
      */
     BodyOfChoice(const Scene<dim> &scene, const MPI_Comm communicator);
+
+    /**
+     * Cells of a plate with round holes that are about so many times as many along each edge as
+     * those of the coarsest mesh, more along each, and how many times the fewest are. Not
+     * collective.
+     */
+    std::pair<CellCounts, double> finer_plate(const double times) const;
 
     /** The scene; `lower` and `upper` are corners of the box around the body in any case. */
     std::shared_ptr<Scene<dim>>     scene;

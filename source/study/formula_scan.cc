@@ -367,8 +367,10 @@ namespace PeriDeal
       for (const auto *const list : {&in_body.initial_displacement, &in_body.initial_velocity})
         for (const Expression &formula : *list)
           scan.see(formula, Jumps::matter);
+      if (!scene.deforms || scene.elasticity.computes_temperature)
+        scan.see(material.conductivity, of_material);
       if (!scene.deforms)
-        return scan.see(material.conductivity, of_material);
+        return;
       scan.see(material.thermal_expansion, of_material);
       scan.see(scene.elasticity.temperature_change, Jumps::matter);
       if (!material.uniform_moduli())

@@ -455,7 +455,8 @@ namespace PeriDeal
   std::optional<double> MeasuredError<dim>::difference(const MeasuredSolution<dim> &fine,
                                                        const MeasuredSolution<dim> &coarse) const
   {
-    if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow)
+    if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow &&
+        scene.accuracy.measure != AccuracyMeasure::stress_intensity)
       return difference_of(fine.seen, coarse.seen, scene.accuracy.measure);
     switch (scene.accuracy.measure)
       {

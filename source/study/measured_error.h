@@ -6,6 +6,7 @@
 #include <perideal/scene/control.h>
 #include <perideal/simulation/simulation.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,6 +19,14 @@ namespace PeriDeal
   {
     std::map<std::string, double> values;
     double least = 0.; // differences of smaller ones are relative to this: they may be zero
+
+    /** Others, whose names get something behind them. */
+    void add(const MeasuredNumbers &others, const std::string &behind)
+    {
+      for (const auto &[name, value] : others.values)
+        values[name + behind] = value;
+      least = std::max(least, others.least);
+    }
   };
 
 

@@ -7,6 +7,7 @@
 #include <perideal/base/memory.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
+#include <perideal/output/tables.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/simulation/estimate.h>
@@ -94,8 +95,11 @@ namespace PeriDeal
         constexpr double share_of_elements = 0.3;
         const double     tolerance         = scene.accuracy.tolerance;
         progress.line(scene.general.title + "  (" + text.file_name + ")");
-        if (!scene.time.steady && !moves)
+        if (!scene.time.steady && !scene.deforms)
           choose_time_tolerance();
+        if (!scene.time.steady && scene.deforms &&
+            !moves) // a linear body: from time to time at once
+          classical.set({{"Time/Time step", full_precision(scene.time.end_time)}});
         // What steps in time leave may be too much; the mesh need not be made for nothing then.
         const double in_space = std::max(0.5 * tolerance, tolerance - time_error);
         refine(classical, (is_nonlocal ? share_of_elements : 1.) * in_space);
@@ -122,7 +126,7 @@ namespace PeriDeal
             "guaranteed: what enters through '" + scene.accuracy.side + "' lies between " +
             number_text(more["accuracy"]["guaranteed"]["lower"].get<double>()) + " and " +
             number_text(more["accuracy"]["guaranteed"]["upper"].get<double>()));
-        if (scene.time.steady)
+        if (chosen->last().simulation->has_kept())
           return chosen->last().simulation->write(std::move(files), more, progress);
         progress.line("computing it again, with results on the way");
         const Tried<dim> last = chosen->release();
@@ -236,6 +240,7 @@ namespace PeriDeal
           }
         for (Search<dim> *const family : {&classical, &nonlocal})
           family->set(settings_in_time(tolerance));
+        classical.know_first(std::move(loose));
         progress.line("in time: Tolerance = " + number_text(tolerance) +
                       " in section 'Time', error about " + rounded_text(100. * time_error) + " %");
       }
@@ -263,8 +268,8 @@ namespace PeriDeal
                  rounded_text(order);
         if (attempt.fineness <= family.last().attempt.fineness)
           return "the number of halvings of a mesh ('Refinements' in section 'Domain')";
-        // A transient problem is computed again for the results on the way.
-        const double runs = scene.time.steady ? 1. : 2.;
+        // Where cracks grow it is computed again for the results on the way.
+        const double runs = family.last().simulation->has_kept() ? 1. : 2.;
         return limit_of(runs * family.expected_time(attempt), family.expected_memory(attempt));
       }
 
@@ -465,12 +470,12 @@ namespace PeriDeal
     for (unsigned int k = 0; k < 5; ++k, fineness *= attempts.first_ratio())
       {
         const Attempt attempt = attempts.at(fineness);
-        if (body.given)
+        const auto    variant = body.given ? nullptr : scene_variant(scene, attempt.settings);
+        if (!variant || !variant->domain.has_lattice())
           {
             progress.line("  " + short_name(attempt));
             continue;
           }
-        const auto        variant  = scene_variant(scene, attempt.settings);
         const RunEstimate estimate = estimate_run(*variant, communicator);
         progress.line("  " + short_name(attempt) + ": " +
                       readable_count(static_cast<unsigned long long>(estimate.cells)) + " cells, " +

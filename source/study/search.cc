@@ -7,6 +7,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
+#include <perideal/scene/lists.h>
 
 #include <algorithm>
 #include <chrono>
@@ -82,21 +83,27 @@ namespace PeriDeal
   template <int dim>
   Tried<dim> Search<dim>::solve(const Attempt &attempt) const
   {
-    using Clock      = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    Tried<dim> one;
+    using Clock         = std::chrono::steady_clock;
+    const auto   start  = Clock::now();
+    const double before = resident_memory();
+    Tried<dim>   one;
     one.attempt                  = attempt;
     one.scene                    = scene_variant(scene, attempt.settings);
     one.scene->general.automatic = true;
-    one.simulation = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
-    one.simulation->solve([&](const double) {
+    one.simulation  = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
+    const bool many = !scene.time.steady && scene.deforms; // numbers, at all times
+    one.simulation->solve([&](const double t) {
       if (!scene.time.steady)
         one.seen.push_back(measure.see(one.simulation->problem(), one.scene->cracks));
+      if (many)
+        one.numbers.add(measure.numbers(*one.simulation), " at t = " + number_text(t));
     });
-    one.numbers = measure.numbers(*one.simulation);
-    one.cells   = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();
+    if (!many)
+      one.numbers = measure.numbers(*one.simulation);
+    one.cells = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     one.wall_time        = Utilities::MPI::max(seconds, communicator);
+    one.memory = Utilities::MPI::sum(std::max(1e6, resident_memory() - before), communicator);
     return one;
   }
 
@@ -104,8 +111,9 @@ namespace PeriDeal
   template <int dim>
   void Search<dim>::compute(const Attempt &attempt)
   {
-    const double          before = resident_memory();
-    Tried<dim>            one    = solve(attempt);
+    Tried<dim> one = known ? std::move(*known) : solve(attempt);
+    known.reset();
+    believed = false;
     std::optional<double> difference;
     if (n > 0)
       difference = measure.difference(one.solution(), latest.solution());
@@ -113,9 +121,16 @@ namespace PeriDeal
     ++n;
     if (!difference) // the first of which anything is known
       steps.clear();
-    last_memory = Utilities::MPI::sum(std::max(1e6, resident_memory() - before), communicator);
     steps.push_back({attempt.fineness, difference ? *difference : 0.});
     now = observed_error(steps, family.lowest_order(), family.best_order());
+    // As if errors got smaller as slowly as cells, and half of that would do: no need of others.
+    constexpr double careful = 2.;
+    if (steps.size() == 2 && family.best_order() >= 2. && cubic_attempt(scene, attempt) &&
+        careful * steps[1].difference <= scene.accuracy.tolerance)
+      {
+        now.error = steps[1].difference / std::min(1., steps[1].fineness / steps[0].fineness - 1.);
+        believed  = careful * now.error <= scene.accuracy.tolerance;
+      }
   }
 
 
@@ -130,6 +145,13 @@ namespace PeriDeal
   template <int dim>
   bool Search<dim>::asks_richer() const
   {
+    const bool knows = scene.accuracy.measure == AccuracyMeasure::probes ||
+                       !latest.numbers.values.empty(); // else the mesh is too coarse
+    if (believed)
+      return false;
+    if (steps.size() == 1)
+      return knows && !family.is_round() && family.best_order() >= 2. &&
+             cubic_attempt(scene, latest.attempt);
     return steps.size() == 2 && family.best_order() >= 2. &&
            smallest_error() <= scene.accuracy.tolerance && cubic_attempt(scene, latest.attempt);
   }
@@ -145,21 +167,27 @@ namespace PeriDeal
   template <int dim>
   double Search<dim>::memory_of_richer() const
   {
-    return cost_of_cubic<dim>() * last_memory;
+    return cost_of_cubic<dim>() * latest.memory;
   }
 
 
   template <int dim>
   void Search<dim>::ask_richer()
   {
-    const double     least  = smallest_error();
+    constexpr double alone  = 2.; // no other mesh is compared with
     const Tried<dim> richer = solve(*cubic_attempt(scene, latest.attempt));
     latest.estimate_time    = richer.wall_time;
-    if (const auto d = measure.difference(richer.solution(), latest.solution()))
-      {
-        now.error = std::max(least, factor_of_cubic(scene) * *d);
-        has_cubic = true;
-      }
+    const auto d            = measure.difference(richer.solution(), latest.solution());
+    if (!d)
+      return;
+    const double error = factor_of_cubic(scene) * *d;
+    if (steps.size() == 2)
+      now.error = std::max(smallest_error(), error);
+    else if (alone * error <= scene.accuracy.tolerance)
+      now.error = alone * error;
+    else
+      return;
+    believed = true;
   }
 
 
@@ -175,7 +203,7 @@ namespace PeriDeal
   {
     if (now.error < 0. || now.error > tolerance)
       return false;
-    if (steps.size() == 2 && has_cubic)
+    if (steps.size() <= 2 && believed)
       return true;
     if (steps.size() == 2)
       return scene.accuracy.measure == AccuracyMeasure::field && family.best_order() > 1. &&
@@ -218,7 +246,7 @@ namespace PeriDeal
   template <int dim>
   double Search<dim>::expected_memory(const Attempt &attempt) const
   {
-    return last_memory * growth(attempt);
+    return latest.memory * growth(attempt);
   }
 
 

@@ -6,6 +6,8 @@
 #include <perideal/study/observed_error.h>
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "attempts.h"
@@ -24,6 +26,7 @@ namespace PeriDeal
     std::vector<SeenValues>          seen; // at each time of the output, unless steady
     double                           wall_time = 0., cells = 0.;
     double                           estimate_time = 0.; // of a richer solution that was asked
+    double                           memory        = 0.; // bytes on all processes
 
     MeasuredSolution<dim> solution() const
     {
@@ -62,13 +65,25 @@ namespace PeriDeal
     /** Solve, and compare with nothing. Throws UserError. */
     Tried<dim> solve(const Attempt &attempt) const;
 
-    /** Solve, and compare with the last one, of which only its numbers are kept. */
+    /** The first() one has been solved. */
+    void know_first(Tried<dim> &&one)
+    {
+      known = std::move(one);
+    }
+
+    /**
+     * Solve unless that one is known, and compare with the last one, of which only its numbers are
+     * kept.
+     */
     void compute(const Attempt &attempt);
 
-    /** Whether cubic elements would tell the error after two solutions. */
+    /** Whether cubic elements would tell the error of the first or the second solution. */
     bool asks_richer() const;
 
-    /** Solve with them. */
+    /**
+     * Solve with them. Of the first one only an error is taken that is half of what is allowed, as
+     * twice that: no other mesh has been compared with.
+     */
     void ask_richer();
 
     double time_of_richer() const;   // seconds
@@ -92,8 +107,9 @@ namespace PeriDeal
      * Whether the error may be called smaller than a tolerance. An order is seen in three solutions
      * at least; a low one is not trusted as long as all are coarse, since it says more of the first
      * than of the last. Two are enough for a field where an order of 1.25 leaves their difference
-     * within the tolerance: at so many points it is not small by accident; and for what
-     * cubic_attempt() is for where that has been solved on the mesh of the second.
+     * within the tolerance: at so many points it is not small by accident. For what cubic_attempt()
+     * is for one or two are where that has been solved on the mesh of the last, and two that agree
+     * within half of the tolerance.
      */
     bool is_within(const double tolerance) const;
 
@@ -127,11 +143,11 @@ namespace PeriDeal
     const MeasuredError<dim>     &measure;
     const Attempts<dim>           family;
     std::vector<Setting>          settings; // of all
+    std::optional<Tried<dim>>     known;    // the first one
     Tried<dim>                    latest;
     unsigned int                  n = 0;
     std::vector<ComparedSolution> steps;
     ObservedError                 now;
-    double                        last_memory = 0.;
-    bool                          has_cubic   = false; // two solutions, and cubic elements
+    bool                          believed = false; // one solution or two are enough
   };
 } // namespace PeriDeal

@@ -10,7 +10,7 @@ import os
 
 import numpy as np
 
-from accuracy_cases import body_cases, crack_cases, elastic_cases, moving_cases, nonlocal_cases, nonlocal_share, smooth_cases, transient_cases
+from accuracy_cases import body_cases, crack_cases, elastic_cases, insulated_crack, loaded_cases, moving_cases, nonlocal_cases, nonlocal_share, smooth_cases, transient_cases
 from scene_test import SOURCE_DIR, check, check_close, check_less, check_message, print_table, run_parts, run_scene
 
 N_POINTS = 1000
@@ -87,6 +87,27 @@ def changing():
         alone, shared = run_scene(text, {"Output/Fields": "none"}), run_scene(text, {"Output/Fields": "none"}, ranks=ranks)
         for mine, theirs in zip(shared.rows("auto"), alone.rows("auto")):
             check_close(mine["value"], theirs["value"], absolute=1e-6, what=f"a probe on {ranks} processes")
+
+
+def loads():
+    """Loads that change with time, heat that strains; cracks that lie on faces of cells of unequal size alone."""
+    check_cases(loaded_cases(), (1e-2, 1e-3), "Bodies at rest, loaded in time and by heat")
+    slowly = loaded_cases()[0].text()
+    run = run_scene(slowly, {"Output/Write at": "0.2, 0.35", "Output/Probes": "0.5,0.5", "Output/Fields": "none"})
+    check([row["time"] for row in run.rows("auto")] == [0.2, 0.35, 0.7], "a body loaded slowly: all times of the output")
+    for row in run.rows("auto"):
+        check_close(row["ux"], row["time"] ** 2, relative=2e-2, what=f"a displacement at t = {row['time']}")
+    check(len({row["time"] for row in run.totals if row["model"] == "auto"}) == 4, "a body loaded slowly: totals at the start and at all times of the output")
+    crack = insulated_crack("crack off all coarse lattices", 0, half_length=0.4637, centre=(0.0713, 0.1931))
+    check_cases([crack], (1e-2, 1e-3), "A crack along an axis")
+    run = run_scene(crack.text(), {"Output/Fields": "none"})
+    check("Domain/Cell lines" in run.summary["accuracy"]["settings"], "cells of unequal size")
+    check_less(run.summary["cells"], 1500, "cells")
+    again = run_scene(crack.text(), {**run.summary["accuracy"]["settings"], "Output/Probes": "0.1,0.5"}, ranks=2)
+    check_close(again.probe("finite elements", (0.1, 0.5)), float(crack.exact(np.array([[0.1, 0.5]]))[0]), absolute=2e-2, what="the settings, without auto")
+    for ranks in (2, 4):
+        shared = run_scene(crack.text(), {"Output/Fields": "none"}, ranks=ranks)
+        check_close(shared.summary["accuracy"]["estimate"], run.summary["accuracy"]["estimate"], relative=1e-6, what=f"the estimate on {ranks} processes")
 
 
 def solid(cracks, boundary):
@@ -284,7 +305,7 @@ def others():
     check_close(next(iter(end.values()))["I"], handbook, relative=1e-2, what="K_I of a bend, loaded at points")
     refused({"Domain/Shape": "plate with hole", "Peridynamics/Horizon": "0.1"}, "'auto' does not choose for", "Shape")
     plate = solid("-0.3,0 ; 0.3,0", "  set Displacement = bottom: 0, 0\n  set Traction = top: 0, 0.01*t")
-    check_message(run_scene(plate, expect_error=True), "'auto' does not choose for", "loads change with time")
+    check_message(run_scene(plate, {"Cracks/Growth": "2: 0, 0.5,0"}, expect_error=True), "'auto' does not choose for", "cracks that grow")
     check_message(run_scene(plate, {"Elasticity/Solver": "dynamics"}, expect_error=True), "'auto' does not choose for", "motion with cracks")
     constant = run_scene("set Dimension = 2\nset Models = auto\nsubsection Boundary conditions\n  set Dirichlet = left: 0; right: 1\nend\nsubsection Time\n  set Steady = true\nend\n")
     check(constant.summary["accuracy"]["constant along"] == ["y"], "a plate that could be a bar")
@@ -295,4 +316,4 @@ def others():
 
 
 if __name__ == "__main__":
-    run_parts(fields, bodies, solids, changing, rough, rough_more, others)
+    run_parts(fields, bodies, loads, solids, changing, rough, rough_more, others)

@@ -265,5 +265,23 @@ def moving_cases():
     ]
 
 
+def loaded_cases():
+    """At rest, at the end of a load that changes with time; and warmed by a temperature that is computed. Lame constants 1 and 1."""
+    pi, sin = np.pi, np.sin
+    moduli, plane = {"Young modulus": 2.5, "Poisson ratio": 0.25}, {"Plane": "strain"}
+    shape = lambda p: sin(pi * p[:, 0]) * sin(pi * p[:, 1])
+    along_x = lambda p, factor=1.: np.stack([factor * shape(p), np.zeros(len(p))], axis=1)
+    force = ("4*pi^2*sin(pi*x)*sin(pi*y)", "-2*pi^2*cos(pi*x)*cos(pi*y)")
+    # The stress of the heat, 5 times the expansion times T, acts as its gradient.
+    warm = f"{force[0]} + 0.5*pi*cos(pi*x)*sin(pi*y), {force[1]} + 0.5*pi*sin(pi*x)*cos(pi*y)"
+    return [
+        Case("loaded slowly", "elastic", lambda p: along_x(p, 0.7 ** 2), material=moduli, elasticity=plane, source={"Body force": f"t^2*{force[0]}, t^2*({force[1]})"},
+             boundary={"Displacement": all_sides("0, 0", 2)}, time={"End time": 0.7}),
+        Case("warmed", "elastic", along_x, material={**moduli, "Thermal expansion": 0.1}, elasticity={**plane, "Temperature change": "computed"},
+             source={"Body force": warm, "Source": "2*pi^2*sin(pi*x)*sin(pi*y)"}, time={"Steady": "true"},
+             boundary={"Displacement": all_sides("0, 0", 2), "Dirichlet": all_sides("0", 2)}),
+    ]
+
+
 def cases():
     return smooth_cases() + crack_cases() + elastic_cases() + nonlocal_cases()

@@ -36,8 +36,8 @@ namespace PeriDeal
   };
 
   /**
-   * That of a body without a lattice: from a mesh file, from a generator of deal.II, or with holes
-   * whose rims it follows. Throws UserError. Collective.
+   * That of a body without a lattice: from a mesh file, from a generator of deal.II, with holes
+   * whose rims it follows, or between lines. Throws UserError. Collective.
    */
   template <int dim>
   GivenMesh<dim> given_mesh(const Domain<dim> &domain, const MPI_Comm communicator);

@@ -6,6 +6,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <perideal/analysis/exact_solution.h>
+#include <perideal/base/own_archive.h>
 #include <perideal/base/progress.h>
 #include <perideal/mesh/grading.h>
 #include <perideal/output/result_folder.h>
@@ -15,6 +16,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <functional>
+#include <list>
 #include <memory>
 #include <string>
 #include <utility>
@@ -60,8 +62,9 @@ namespace PeriDeal
 
     /**
      * Find the solution and write nothing, for programs that look at it first: problem(), found(),
-     * then, of a steady scene, write() or nothing.
-     * @param see called with the times at which results would be written, each as it is reached
+     * then write() or nothing. The states at the times at which results would be written are kept
+     * for that, unless cracks or the mesh change on the way.
+     * @param see called with these times, each as it is reached
      */
     void solve(const std::function<void(const double)> &see = {});
 
@@ -74,9 +77,14 @@ namespace PeriDeal
     /** What summary.json would have, after solve(). */
     nlohmann::ordered_json found();
 
+    /** Whether write() may follow solve(); else it stands in place of it, and computes. */
+    bool has_kept() const
+    {
+      return scene.time.steady || !kept.empty();
+    }
+
     /**
-     * Write all files, summary.json last: of a steady scene after solve(); else in place of it,
-     * since what is written on the way is not kept.
+     * Write all files, summary.json last.
      * @param files of this run, of which nothing has been written but what is known at the start
      * @param more  what the summary has besides
      * @param tell  says notes, what was found and where the results are
@@ -96,6 +104,7 @@ namespace PeriDeal
       std::vector<double> stops;       // all on the way to it, from the last one on
       unsigned int        stop    = 0; // of these the next
       unsigned int        problem = 0; // companions first: the one on its way to the next meeting
+      double              wall_time_before = 0.; // the run was resumed
 
       void exchange(Archive &archive);
     };
@@ -129,7 +138,6 @@ namespace PeriDeal
     bool                   tells_at_stops() const;
     void                   advance_to(const double t);
     void                   find_steady_state();
-    std::vector<double>    stops_until(const double t) const;
 
     /** Stops that have been passed, and those of the whole run, where problems tell of them. */
     std::pair<unsigned int, unsigned int> count_stops() const;
@@ -182,7 +190,7 @@ namespace PeriDeal
     std::unique_ptr<RunGuards<dim>>             guards;
     Adaptation                                  adaptation;
     Place                                       place;
-    std::unique_ptr<CheckpointClock>            clock;                 // unless steady
-    double                                      wall_time_before = 0.; // the run was resumed
+    std::unique_ptr<CheckpointClock>            clock; // unless steady
+    std::list<OwnArchive>                       kept;  // by solve(): at the start and output times
   };
 } // namespace PeriDeal
