@@ -19,6 +19,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "griffith.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -298,7 +300,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  MeasuredNumbers MeasuredError<dim>::numbers(Simulation<dim> &simulation) const
+  MeasuredNumbers MeasuredError<dim>::numbers(Simulation<dim>   &simulation,
+                                              const Cracks<dim> &cracks) const
   {
     constexpr double      small   = 0.01;
     const AccuracyMeasure measure = scene.accuracy.measure;
@@ -317,6 +320,13 @@ namespace PeriDeal
                                 join_names(names) + "." + did_you_mean(side, names));
         numbers.values[side] = flows[side].template get<double>();
         numbers.least = small * std::max(scale_of(all), size_by_range(scene, simulation.problem()));
+      }
+    else if (measure == AccuracyMeasure::strength)
+      {
+        const Json          all   = simulation.found()["models"]["auto"];
+        const GriffithState state = griffith_state(scene, cracks, all);
+        if (!state.ends.empty())
+          numbers.values["strength"] = state.strength();
       }
     else if (measure == AccuracyMeasure::stress_intensity)
       {
@@ -437,7 +447,8 @@ namespace PeriDeal
   std::optional<double> MeasuredError<dim>::difference(const MeasuredSolution<dim> &fine,
                                                        const MeasuredSolution<dim> &coarse) const
   {
-    if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow)
+    if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow &&
+        !scene.accuracy.measures_growth())
       return difference_of(fine.seen, coarse.seen, scene.accuracy.measure);
     switch (scene.accuracy.measure)
       {

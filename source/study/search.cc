@@ -90,10 +90,10 @@ namespace PeriDeal
     one.scene->general.automatic = true;
     one.simulation = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
     one.simulation->solve([&](const double) {
-      if (!scene.time.steady)
+      if (!scene.time.steady && !scene.accuracy.measures_growth())
         one.seen.push_back(measure.see(one.simulation->problem(), one.scene->cracks));
     });
-    one.numbers = measure.numbers(*one.simulation);
+    one.numbers = measure.numbers(*one.simulation, one.scene->cracks);
     one.cells   = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     one.wall_time        = Utilities::MPI::max(seconds, communicator);
