@@ -9,6 +9,7 @@
 #include <perideal/base/gathered_lists.h>
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
+#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/study/naming.h>
@@ -321,7 +322,7 @@ namespace PeriDeal
         numbers.values[side] = flows[side].template get<double>();
         numbers.least = small * std::max(scale_of(all), size_by_range(scene, simulation.problem()));
       }
-    else if (measure == AccuracyMeasure::strength)
+    else if (measure == measure_of_strength)
       {
         const Json          all   = simulation.found()["models"]["auto"];
         const GriffithState state = griffith_state(scene, cracks, all);
@@ -448,7 +449,7 @@ namespace PeriDeal
                                                        const MeasuredSolution<dim> &coarse) const
   {
     if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow &&
-        !scene.accuracy.measures_growth())
+        !measures_growth(scene.accuracy))
       return difference_of(fine.seen, coarse.seen, scene.accuracy.measure);
     switch (scene.accuracy.measure)
       {
