@@ -264,8 +264,11 @@ def add_picks(page, data):
         page.add(f"<p>Nothing: {escape(style.prose(data['no picks']))}</p>")
     elif data.get("picks"):
         page.section("What auto picks", "picks")
-        page.add("<p>Models = auto, asked for an error of so much of the range of the values. The error is measured like all others here, in the relative L2 norm, at "
-                 "the vertices of the finest lattice, between the vertices of its own mesh, too; the wall time is that of the whole run with all tries.</p>")
+        if data.get("measure") in ("strength", "path"):
+            page.add("<p>Models = auto, asked for so much; the wall time is that of the whole run with all tries.</p>")
+        else:
+            page.add("<p>Models = auto, asked for an error of so much of the range of the values. The error is measured like all others here, in the relative L2 norm, at "
+                     "the vertices of the finest lattice, between the vertices of its own mesh, too; the wall time is that of the whole run with all tries.</p>")
         page.add(f'<div class="wide">{picks_table(data)}</div>')
 
 

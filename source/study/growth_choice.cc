@@ -18,8 +18,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <sstream>
 
+#include "goal_estimate.h"
 #include "growth_lattices.h"
 #include "growth_trace.h"
 #include "spending.h"
@@ -225,25 +227,47 @@ namespace PeriDeal
         measures_path() ? search_path() : search_strength();
       }
 
-      /**
-       * So long that a crack that turns is followed, and so short that force over length is seen.
-       */
+      /** So long that some steps lead through the body; for the strength some along the crack. */
       double first_step() const
       {
         constexpr double share    = 1. / 16.;
-        double           shortest = longest;
+        double           shortest = longest, crack = longest;
         for (unsigned int d = 0; d < 2; ++d)
           shortest = std::min(shortest, scene.domain.upper[d] - scene.domain.lower[d]);
         for (const GrowingCracks::End &end : cracks.ends())
-          shortest = std::min(shortest, cracks.last_stretch(end));
-        return std::max(0.25 * share * longest, std::min(share * longest, 0.25 * shortest));
+          crack = std::min(crack, cracks.last_stretch(end));
+        if (measures_path())
+          return on_lattice(std::min(share * longest, shortest / 6.));
+        return on_lattice(std::max(0.25 * share * longest,
+                                   std::min({share * longest, 0.25 * shortest, 0.25 * crack})));
+      }
+
+      /** About this, so that cracks along the axes come to lines of a coarse lattice. */
+      double on_lattice(const double step) const
+      {
+        constexpr unsigned int most = 48;
+        const CrackedBox       box  = cracked_box(scene);
+        if (!along_axes(box))
+          return step;
+        const auto        &crack = box.cracks[0];
+        const unsigned int d =
+          std::abs(crack[1][0] - crack[0][0]) > std::abs(crack[1][1] - crack[0][1]) ? 0 : 1;
+        for (unsigned int n = 1; n <= most; ++n)
+          if (corners_on_planes(box, d, n))
+            {
+              const double unit = (box.upper[d] - box.lower[d]) / n;
+              return step > unit ? std::round(step / unit) * unit : unit / std::round(unit / step);
+            }
+        return step;
       }
 
       void search_strength()
       {
         progress.line("Models = auto: the body without a horizon of its own is Griffith's: where "
                       "it bears most as its cracks grow");
-        const GrowthTrace  trace = tracer.follow(cracks, {first_step(), false, 1., {}});
+        const GrowthTrace trace = follow(first_step(), false);
+        if (trace.is_stopped)
+          refuse_without_estimate(-1., trace.seconds);
         const TracedState &most  = trace.states[trace.strongest()];
         const double       steps = trace.between_states();
         tell_trace(trace);
@@ -253,8 +277,17 @@ namespace PeriDeal
         Search<2> family(body, text, communicator, measure, LimitOfAttempts::classical);
         family.set(common);
         progress.line("Models = auto: " + family.attempts().reason());
-        refine(family, scene.accuracy.tolerance - steps);
-        keep(family, most, steps);
+        const double error = refine(family, most, common, scene.accuracy.tolerance - steps);
+        keep(family, most, error, steps);
+      }
+
+      /** As long as the budget allows it; else `limit` says so. */
+      GrowthTrace follow(const double step, const bool to_end)
+      {
+        return tracer.follow(cracks, {step, to_end, 1., [this](const double seconds) {
+                                        limit = spending.limit_of(seconds, 0.);
+                                        return limit.empty();
+                                      }});
       }
 
       void tell_trace(const GrowthTrace &trace)
@@ -277,26 +310,34 @@ namespace PeriDeal
         progress.line(line.str());
       }
 
-      /** As Choice does, until the estimate is within the tolerance. */
-      void refine(Search<2> &family, const double tolerance)
+      /**
+       * Ever finer, until the estimate is within the tolerance; the first as the cracks were
+       * followed by. Returns the estimate.
+       */
+      double refine(Search<2>                  &family,
+                    const TracedState          &state,
+                    const std::vector<Setting> &common,
+                    const double                tolerance)
       {
         constexpr unsigned int most = 14, most_unknown = 5;
-        for (Attempt next = family.first();;)
+        Attempt                next = family.attempts().at(state.fineness);
+        next.settings.insert(next.settings.end(), common.begin(), common.end());
+        for (;;)
           {
             family.compute(next);
-            if (family.asks_richer() &&
-                spending.limit_of(family.time_of_richer(), family.memory_of_richer()).empty())
-              family.ask_richer();
-            const Tried<2> &last  = family.last();
-            const double    found = strength_of(last), error = family.error().error;
-            tell(next.model,
-                 next.settings,
-                 "strength " + number_text(found),
-                 found,
-                 error,
-                 last.wall_time + last.estimate_time);
-            if (family.is_within(tolerance))
-              return;
+            double error = family.error().error, more = 0.;
+            if (const auto cubic = by_cubic(family, more); cubic)
+              error = *cubic;
+            else if (family.asks_richer() &&
+                     spending.limit_of(family.time_of_richer(), family.memory_of_richer()).empty())
+              {
+                family.ask_richer();
+                error = family.error().error;
+              }
+            tell_strength(family.last(), error, more);
+            if (family.n_compared() == 1 ? error >= 0. && error <= careful * tolerance :
+                                           family.is_within(tolerance))
+              return error;
             scene.accuracy.refuse(
               family.n_tried() >= most_unknown && family.n_compared() < 2,
               "Measure",
@@ -306,8 +347,38 @@ namespace PeriDeal
                                                spending.limit_of(2. * family.expected_time(next),
                                                                  family.expected_memory(next));
             if (!limit.empty())
-              return refuse_without_estimate(error, family.expected_time(next));
+              {
+                refuse_without_estimate(error, family.expected_time(next));
+                return error;
+              }
           }
+      }
+
+      /** What cubic elements say of the first solution, which may be good enough. */
+      std::optional<double> by_cubic(const Search<2> &family, double &seconds) const
+      {
+        const Tried<2> &last  = family.last();
+        const auto      cubic = cubic_attempt(scene, last.attempt);
+        if (family.n_compared() != 1 || strength_of(last) <= 0. || !cubic ||
+            family.attempts().best_order() < 2. ||
+            !spending.limit_of(family.time_of_richer(), family.memory_of_richer()).empty())
+          return {};
+        const Tried<2> richer = family.solve(*cubic);
+        seconds               = richer.wall_time;
+        const auto difference = measure.difference(richer.solution(), last.solution());
+        return difference ? std::optional<double>(factor_of_cubic(scene) * *difference) :
+                            std::nullopt;
+      }
+
+      void tell_strength(const Tried<2> &last, const double error, const double more)
+      {
+        const double found = strength_of(last);
+        tell(last.attempt.model,
+             last.attempt.settings,
+             found > 0. ? "strength " + number_text(found) : "no room around the ends of cracks",
+             found,
+             error,
+             last.wall_time + last.estimate_time + more);
       }
 
       static double strength_of(const Tried<2> &one)
@@ -317,10 +388,13 @@ namespace PeriDeal
       }
 
       /** What is written: the body when it bears most. */
-      void keep(const Search<2> &family, const TracedState &most, const double steps)
+      void keep(const Search<2>   &family,
+                const TracedState &most,
+                const double       error,
+                const double       steps)
       {
-        const Tried<2>     &last  = family.last();
-        const double        error = family.error().error, tolerance = scene.accuracy.tolerance;
+        const Tried<2>     &last      = family.last();
+        const double        tolerance = scene.accuracy.tolerance;
         const GriffithState state =
           griffith_state(scene, last.scene->cracks, last.simulation->found()["models"]["auto"]);
         const double end = std::min(1., state.load()) * scene.time.end_time;
@@ -355,7 +429,12 @@ namespace PeriDeal
         double      step = first_step(), error = -1.;
         for (unsigned int n = 0;; ++n, step *= 0.5)
           {
-            GrowthTrace  now  = tracer.follow(cracks, {step, true, 1., {}});
+            GrowthTrace now = follow(step, true);
+            if (now.is_stopped)
+              {
+                refuse_without_estimate(error, now.seconds);
+                break;
+              }
             const double grew = now.states.back().cracks.grown();
             scene.accuracy.refuse(
               now.paths.empty(),
@@ -381,10 +460,10 @@ namespace PeriDeal
                 break;
               }
           }
-        keep(before, 2. * step, error);
+        keep(before, error);
       }
 
-      void keep(const GrowthTrace &trace, const double step, const double error)
+      void keep(const GrowthTrace &trace, const double error)
       {
         const TracedState &last = trace.states.back();
         chosen.settings         = last.attempt.settings;
@@ -396,8 +475,11 @@ namespace PeriDeal
         chosen.reason   = "Cracks grow in the direction that releases most energy: finite elements "
                           "where they run along the axes, bonds around them elsewhere.";
         chosen.left     = {{"mesh", 0.}, {"zone", 0.}, {"trapping", 0.}, {"steps", error}};
-        chosen.more["path"] = {{"lines", json_of(trace.paths)}, {"step", 0.5 * step}};
+        chosen.more["path"] = {{"lines", json_of(trace.paths)}, {"step", trace.step}};
       }
+
+      static constexpr double careful =
+        0.5; // of the tolerance, after one solution and cubic elements
 
       const CrackTracer<2> tracer;
       const GrowingCracks  cracks;

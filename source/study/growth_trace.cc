@@ -153,39 +153,30 @@ namespace PeriDeal
 
 
   template <int dim>
-  GriffithState CrackTracer<dim>::solved(const GrowingCracks &cracks,
-                                         const double         end_time,
-                                         const double         fineness,
-                                         Attempt             &attempt) const
+  TracedState CrackTracer<dim>::state_of(const GrowingCracks &cracks,
+                                         const double         time,
+                                         const double         fineness) const
   {
     constexpr unsigned int  n_tries = 3;
     constexpr double        finer   = 1.5;
-    const auto              variant = scene_variant(scene, settings(cracks, end_time));
+    const auto              variant = scene_variant(scene, settings(cracks, time));
     const BodyOfChoice<dim> body(*variant, communicator);
     const Search<dim>       search(body, text, communicator, measure, LimitOfAttempts::classical);
-    double                  wanted = fineness * fineness_for(cracks, search.attempts());
-    GriffithState           state;
-    for (unsigned int k = 0; k < n_tries; ++k, wanted *= finer)
+    TracedState             one{cracks, {}, {}};
+    one.fineness = fineness * fineness_for(cracks, search.attempts());
+    for (unsigned int k = 0;; ++k, one.fineness *= finer)
       {
-        attempt              = search.attempts().at(wanted);
-        const Tried<dim> one = search.solve(attempt);
-        state = griffith_state(scene, one.scene->cracks, one.simulation->found()["models"]["auto"]);
+        one.attempt            = search.attempts().at(one.fineness);
+        const Tried<dim> tried = search.solve(one.attempt);
+        one.state =
+          griffith_state(scene, tried.scene->cracks, tried.simulation->found()["models"]["auto"]);
         const auto &ends = cracks.ends();
-        if (std::all_of(ends.begin(), ends.end(), [&](const GrowingCracks::End &end) {
-              return is_seen(state, cracks.name(end));
+        if (k + 1 == n_tries ||
+            std::all_of(ends.begin(), ends.end(), [&](const GrowingCracks::End &end) {
+              return is_seen(one.state, cracks.name(end));
             }))
-          break;
+          return one;
       }
-    return state;
-  }
-
-
-  template <int dim>
-  TracedState CrackTracer<dim>::state_of(const GrowingCracks &cracks, const double fineness) const
-  {
-    TracedState one{cracks, {}, {}};
-    one.state = solved(cracks, scene.time.end_time, fineness, one.attempt);
-    return one;
   }
 
 
@@ -207,8 +198,7 @@ namespace PeriDeal
              end.name +
                " is pressed together by the loads (K_I < 0), where faces that touch matter. "
                "Give 'Horizon' in section 'Peridynamics' as a length.");
-    Attempt             attempt;
-    const GriffithState half  = solved(state.cracks, 0.5 * scene.time.end_time, 1., attempt);
+    const GriffithState half  = state_of(state.cracks, 0.5 * scene.time.end_time, 1.).state;
     double              apart = std::abs(2. * half.force / state.state.force - 1.);
     for (std::size_t k = 0; k < half.ends.size() && k < state.state.ends.size(); ++k)
       apart = std::max(apart,
@@ -232,13 +222,14 @@ namespace PeriDeal
       return Utilities::MPI::max(std::chrono::duration<double>(Clock::now() - start).count(),
                                  communicator);
     };
-    GrowthTrace   trace;
+    GrowthTrace trace;
+    trace.step            = control.step;
     GrowingCracks cracks  = from;
     double        reached = 0., best = 0.; // share of the loads, largest force
     while (trace.states.size() < most)
       {
         const double before = seconds();
-        TracedState  now    = state_of(cracks, control.fineness);
+        TracedState  now    = state_of(cracks, scene.time.end_time, control.fineness);
         if (trace.states.empty())
           refuse_loads(now);
         for (const GrowingCracks::End &end : std::vector<GrowingCracks::End>(cracks.ends()))
@@ -252,7 +243,7 @@ namespace PeriDeal
               (1. - last.state.load()) / (std::min(load, 2.) - last.state.load());
             cracks = last.cracks;
             grow_first(cracks, last.state, share * control.step);
-            now       = state_of(cracks, control.fineness);
+            now       = state_of(cracks, scene.time.end_time, control.fineness);
             now.bears = std::min(1., std::max(reached, now.state.load())) * now.state.force;
             trace.states.push_back(std::move(now));
             break;
@@ -265,8 +256,8 @@ namespace PeriDeal
         trace.ends_early =
           !control.to_end && reached < 1. &&
           ((trace.states.size() > 2 && last.state.force <= best) || load < fallen * reached);
-        if (reached >= 1. || trace.ends_early || cracks.ends().empty() ||
-            (control.may_go_on && !control.may_go_on(seconds() - before)))
+        trace.is_stopped = control.may_go_on && !control.may_go_on(seconds() - before);
+        if (reached >= 1. || trace.ends_early || cracks.ends().empty() || trace.is_stopped)
           break;
         grow_first(cracks, last.state, control.step);
         if (cracks.ends().empty())

@@ -18,8 +18,9 @@ namespace PeriDeal
   {
     GrowingCracks cracks;
     GriffithState state;
-    Attempt       attempt; // by which it was found
-    double bears = 0.;     // the largest force with these cracks; 0 where they run through at once
+    Attempt       attempt;       // by which it was found
+    double        fineness = 0.; // that Attempts was asked for
+    double bears = 0.; // the largest force with these cracks; 0 where they run through at once
   };
 
 
@@ -29,7 +30,8 @@ namespace PeriDeal
     std::vector<TracedState>         states;
     std::vector<GrowingCracks::Path> paths; // to a side, or as far as the loads bring them
     bool                             ends_early = false; // nothing later bears more
-    double                           seconds    = 0.;
+    bool                             is_stopped = false; // by TraceControl::may_go_on
+    double                           step = 0., seconds = 0.;
 
     /** The one that bears most. */
     std::size_t strongest() const;
@@ -69,18 +71,16 @@ namespace PeriDeal
     /** Entries of the body with these cracks and whole bonds, at the end of the run or before. */
     std::vector<Setting> settings(const GrowingCracks &cracks, const double end_time) const;
 
-    /** The coarsest solution that will do. */
-    TracedState state_of(const GrowingCracks &cracks, const double fineness) const;
+    /** What holds at a time, by the coarsest solution that will do, or one so many times finer. */
+    TracedState state_of(const GrowingCracks &cracks,
+                         const double         time,
+                         const double         fineness) const;
 
     /** Throws UserError if loads are not in proportion to time, or press all cracks together. */
     void refuse_loads(const TracedState &state) const;
 
   private:
-    GriffithState solved(const GrowingCracks &cracks,
-                         const double         end_time,
-                         const double         fineness,
-                         Attempt             &attempt) const;
-    double        fineness_for(const GrowingCracks &cracks, const Attempts<dim> &attempts) const;
+    double fineness_for(const GrowingCracks &cracks, const Attempts<dim> &attempts) const;
 
     const Scene<dim>         &scene;
     const SceneText          &text;
