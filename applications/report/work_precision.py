@@ -54,18 +54,23 @@ def applications(data):
     return "iterations" if data["steady"] else "operator applications"
 
 
-MEASURES = {"field": "of the nodal values", "opening": "of the opening of cracks", "stress intensity": "of the stress intensities"}
+MEASURES = {"field": "of the nodal values", "opening": "of the opening of cracks", "stress intensity": "of the stress intensities", "strength": "of the largest force",
+            "path": "of the cracks' path"}
 
 
 def error_label(data):
     """What the error is that of."""
-    return f"relative L2 error {MEASURES[data.get('measure', 'field')]}"
+    measure = data.get("measure", "field")
+    return {"strength": "relative error of the largest force", "path": "farthest distance of the crack, over the longest edge"}.get(measure) or f"relative L2 error {MEASURES[measure]}"
 
 
 def reference_text(data):
     """What errors are measured against."""
     of_what = MEASURES[data.get("measure", "field")]
     reference = data["reference"]
+    if "tolerance" in reference:
+        return (f"Errors {of_what} against what Models = auto finds, asked for {style.plain(reference['tolerance'], 1)}, which is estimated to be wrong by "
+                f"{style.plain(reference['own error'], 2)} itself.")
     if "cells" not in reference:
         return f"Errors {of_what} against the exact solution, relative L2 norm."
     against = "finite elements with the cracks on cell faces" if "crack" in reference["kind"] else "finite elements of degree 2"
@@ -193,7 +198,7 @@ def caption(data, x):
     what = "work" if x == "work" else "wall time"
     return (f"Each line is a method on finer and finer lattices. Blue: finite elements; orange: peridynamics in the whole body; green: coupled. Grey: the "
             f"Pareto front, the settings (circles) that none beats in {what} and error at once."
-            + (" Stars: what Models = auto picks for 3e-2, 1e-2 and 1e-3, with all tries." if x != "work" and picks_of(data) else "")
+            + (" Stars: what Models = auto picks, with all tries." if x != "work" and picks_of(data) else "")
             + (" Thin lines: the other families of the tables below." if any(look_of(data, f) is None for f in data["families"]) else ""))
 
 
@@ -259,8 +264,11 @@ def add_picks(page, data):
         page.add(f"<p>Nothing: {escape(style.prose(data['no picks']))}</p>")
     elif data.get("picks"):
         page.section("What auto picks", "picks")
-        page.add("<p>Models = auto, asked for an error of so much of the range of the values. The error is measured like all others here, in the relative L2 norm, at "
-                 "the vertices of the finest lattice, between the vertices of its own mesh, too; the wall time is that of the whole run with all tries.</p>")
+        if data.get("measure") in ("strength", "path"):
+            page.add("<p>Models = auto, asked for so much; the wall time is that of the whole run with all tries.</p>")
+        else:
+            page.add("<p>Models = auto, asked for an error of so much of the range of the values. The error is measured like all others here, in the relative L2 norm, at "
+                     "the vertices of the finest lattice, between the vertices of its own mesh, too; the wall time is that of the whole run with all tries.</p>")
         page.add(f'<div class="wide">{picks_table(data)}</div>')
 
 

@@ -61,7 +61,7 @@ def _parser(kind: str) -> argparse.ArgumentParser:
     rows.add_argument("--cells", help='the lattices, from coarse to fine: "21, 21 | 41, 41 | 81, 81"')
     rows.add_argument("--reference", help="the three lattices of the reference solution")
     rows.add_argument("--budget", type=_positive, help="leave out peridynamics in the whole body with more bonds (2e6)")
-    rows.add_argument("--measure", help="the error of the field, of the opening of cracks, or of stress intensity (field)")
+    rows.add_argument("--measure", help="the error of the field, of the opening of cracks, of stress intensity, or of the strength or path of cracks that grow (field)")
     rows.add_argument("--no-auto", action="store_true", default=None, help="leave out what `Models = auto` chooses")
     rows.add_argument("--only", nargs="+", action="extend", metavar="NAME", help="compute the rows or groups of these names only")
     rows.add_argument("--redo", action="store_true", default=None, help="compute finished rows again")

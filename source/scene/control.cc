@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/instantiate.h>
+#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/control.h>
 #include <perideal/scene/lists.h>
 
@@ -327,7 +328,8 @@ namespace PeriDeal
       "of a vector the component with the largest range), of a flow or a stress intensity relative to itself.";
     declare("Measure", EntryType::text, "field") =
       "In what the error is measured: `field`, the root mean square over the body; `probes`, the largest at the points of `Probes`; `flow: SIDE`, what "
-      "enters through a side; `stress intensity`, the largest at the ends of cracks (elasticity in 2D).";
+      "enters through a side; `stress intensity`, the largest at the ends of cracks (elasticity in 2D); of bodies whose bonds break `strength`, the largest force on a side in the run, "
+      "and `path`, the farthest distance between the crack at the end of the run and the converged one, over the longest edge.";
     declare_if_given(budget, "Budget", "", "s", Bounds::positive.saying("seconds, more than 0")) =
       "Wall time in seconds within which a result has to be there, the best until then. Empty: "
       "no limit.";
@@ -356,6 +358,10 @@ namespace PeriDeal
       measure = AccuracyMeasure::probes;
     else if (given == "stress intensity")
       measure = AccuracyMeasure::stress_intensity;
+    else if (given == "strength")
+      measure = measure_of_strength;
+    else if (given == "path")
+      measure = measure_of_path;
     else if (given.compare(0, flow.size(), flow) == 0)
       {
         measure = AccuracyMeasure::flow;
@@ -363,9 +369,12 @@ namespace PeriDeal
         refuse(side.empty(), "Measure", "found '" + given + "', needs a side behind 'flow:'.");
       }
     else
-      error("Measure",
-            "found '" + given + "', needs field, probes, flow: SIDE or stress intensity." +
-              did_you_mean(given, {"field", "probes", "flow: SIDE", "stress intensity"}));
+      error(
+        "Measure",
+        "found '" + given +
+          "', needs field, probes, flow: SIDE, stress intensity, strength or path." +
+          did_you_mean(given,
+                       {"field", "probes", "flow: SIDE", "stress intensity", "strength", "path"}));
     memory = -1.;
     if (!text("Memory").empty())
       {

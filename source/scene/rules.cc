@@ -3,6 +3,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
+#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 
@@ -466,6 +467,44 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** What a strength and the path of a crack need. */
+    template <int dim>
+    void refuse_measure_of_growth(const Scene<dim> &scene)
+    {
+      const Material &material = scene.material;
+      const bool      is_long  = scene.peridynamics.horizon > 0.;
+      const auto      refuse   = [&](const bool fault, const std::string &what) {
+        scene.accuracy.refuse(fault,
+                              "Measure",
+                              "is '" + scene.accuracy.measure_text() + "', but " + what);
+      };
+      refuse(!scene.deforms, "'Physics' is not elasticity.");
+      refuse(dim == 1, "'Dimension' is 1; bars have no cracks that grow.");
+      refuse(
+        !material.breaks(),
+        "nothing breaks: give 'Fracture energy' in section 'Material' (or 'Critical stretch', with 'Horizon' in section 'Peridynamics' as a length).");
+      refuse(!scene.elasticity.is_static(),
+             "'Solver' in section 'Elasticity' is 'dynamics'; it is for bodies at rest.");
+      refuse(
+        !scene.is_loaded_slowly(),
+        "no load depends on t: give displacements, tractions or forces that grow with it, as in 'top: 0, 0.01*t'.");
+      if (is_long)
+        return;
+      refuse(
+        !material.fracture_energy,
+        "'Critical stretch' in section 'Material' without a 'Horizon' in section 'Peridynamics' that is a length is no fracture energy: the finer the lattice, the less a crack takes, and nothing converges. Give 'Fracture energy', or that 'Horizon'.");
+      refuse(
+        scene.cracks.cracks.empty(),
+        "section 'Cracks' has no crack: without one the body bears the more, the smaller the horizon. Give a crack, or 'Horizon' in section 'Peridynamics' as a length.");
+      refuse(
+        dim == 3,
+        "'Dimension' is 3: cracks are followed in two dimensions. Give 'Horizon' in section 'Peridynamics' as a length.");
+    }
+  } // namespace
+
+
   template <int dim>
   void refuse_measure(const Scene<dim> &scene)
   {
@@ -474,6 +513,8 @@ namespace PeriDeal
     accuracy.refuse(accuracy.measure == AccuracyMeasure::probes && scene.output.probes.empty(),
                     "Measure",
                     "is 'probes', but 'Probes' in section 'Output' has no point.");
+    if (measures_growth(accuracy))
+      refuse_measure_of_growth(scene);
     accuracy.refuse(accuracy.measure == AccuracyMeasure::flow && deforms,
                     "Measure",
                     "is 'flow', but nothing flows in an elastic body; 'field', 'probes' and "
@@ -490,6 +531,34 @@ namespace PeriDeal
 
   namespace
   {
+    /** The same where cracks that grow are measured. */
+    template <int dim>
+    std::string obstacle_to_growth(const Scene<dim> &scene)
+    {
+      const bool is_long = scene.peridynamics.horizon > 0.;
+      if (scene.domain.shape != Shape::box)
+        return "bonds that break in bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
+      if (scene.material.law.kind != SolidLaw::linear)
+        return "bonds that break by another 'Law' than 'linear' (section 'Material')";
+      if (scene.elasticity.computes_temperature)
+        return "bonds that break with a computed temperature ('Temperature change' in section 'Elasticity')";
+      if (scene.elasticity.has_full_kinematics())
+        return "bonds that break with 'Kinematics = full' (section 'Elasticity')";
+      if (scene.cracks.change())
+        return "prescribed cracks that grow beside bonds that break ('Growth' in section 'Cracks')";
+      if (scene.material.scatter)
+        return "strengths that scatter from node to node, another body on each lattice ('Weibull modulus' in section 'Material')";
+      if (is_long)
+        return "";
+      if (!scene.material.uniform_moduli())
+        return "cracks that grow where moduli vary, unless 'Horizon' in section 'Peridynamics' is a length";
+      if (scene.material.phases.gives("Fracture energy") ||
+          scene.material.phases.gives("Critical stretch"))
+        return "phases with a 'Fracture energy' of their own (section 'Material/Phases'), unless 'Horizon' in section 'Peridynamics' is a length. Give it as a formula";
+      return "";
+    }
+
+
     /** What is not yet chosen for, in words, or nothing. */
     template <int dim>
     std::string obstacle_to_choice(const Scene<dim> &scene)
@@ -498,6 +567,8 @@ namespace PeriDeal
       const bool is_box = scene.domain.shape == Shape::box;
       if (scene.domain.is_image())
         return "images ('Shape' in section 'Domain')";
+      if (measures_growth(scene.accuracy) && scene.deforms && !moves)
+        return obstacle_to_growth(scene);
       if (!is_box && scene.peridynamics.horizon > 0.)
         return "a horizon that is a length in bodies other than a box ('Shape' and 'Holes' in section 'Domain')";
       if (!is_box && scene.cracks.change())
@@ -516,7 +587,7 @@ namespace PeriDeal
           (scene.warms_slowly() || !scene.cracks.cracks.empty()))
         return "a computed temperature ('Temperature change' in section 'Elasticity') that changes with time, or with cracks";
       if (scene.material.breaks())
-        return "bonds that break ('Fracture energy', 'Critical stretch' in section 'Material')";
+        return "bonds that break ('Fracture energy', 'Critical stretch' in section 'Material'), unless 'Measure' in section 'Accuracy' is 'strength' or 'path' and the body is at rest";
       if (scene.cracks.conduct() && scene.cracks.contact_conductance < 0.)
         return "'Transmission' of cracks, a share of bonds of one horizon, another crack on each lattice: give 'Contact conductance'";
       return "";

@@ -189,7 +189,10 @@ namespace PeriDeal
   void RunOutput<dim>::end_time(const std::function<RunFiles::Json()> &summary,
                                 const std::string                     &reached)
   {
-    run_files->add_totals(std::exchange(record.totals, ""));
+    const std::string rows = std::exchange(record.totals, "");
+    if (!run_files) // solved alone, without results
+      return;
+    run_files->add_totals(rows);
     run_files->after_output(summary, reached);
   }
 

@@ -703,6 +703,8 @@ namespace PeriDeal
   template <int dim>
   void Simulation<dim>::offer_checkpoint(const double t)
   {
+    if (!output->is_open()) // solved alone, without results
+      return;
     const CheckpointClock::Need need = clock->need(t);
     if (need == CheckpointClock::Need::none)
       return;

@@ -9,6 +9,7 @@
 #include <perideal/base/gathered_lists.h>
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
+#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/study/naming.h>
@@ -18,6 +19,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+
+#include "griffith.h"
 
 namespace PeriDeal
 {
@@ -316,7 +319,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  MeasuredNumbers MeasuredError<dim>::numbers(Simulation<dim> &simulation) const
+  MeasuredNumbers MeasuredError<dim>::numbers(Simulation<dim>   &simulation,
+                                              const Cracks<dim> &cracks) const
   {
     constexpr double      small   = 0.01;
     const AccuracyMeasure measure = scene.accuracy.measure;
@@ -335,6 +339,13 @@ namespace PeriDeal
                                 join_names(names) + "." + did_you_mean(side, names));
         numbers.values[side] = flows[side].template get<double>();
         numbers.least = small * std::max(scale_of(all), size_by_range(scene, simulation.problem()));
+      }
+    else if (measure == measure_of_strength)
+      {
+        const Json          all   = simulation.found()["models"]["auto"];
+        const GriffithState state = griffith_state(scene, cracks, all);
+        if (!state.ends.empty())
+          numbers.values["strength"] = state.strength();
       }
     else if (measure == AccuracyMeasure::stress_intensity)
       {
@@ -456,7 +467,8 @@ namespace PeriDeal
                                                        const MeasuredSolution<dim> &coarse) const
   {
     if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow &&
-        scene.accuracy.measure != AccuracyMeasure::stress_intensity)
+        scene.accuracy.measure != AccuracyMeasure::stress_intensity &&
+        !measures_growth(scene.accuracy))
       return difference_of(fine.seen, coarse.seen, scene.accuracy.measure);
     switch (scene.accuracy.measure)
       {

@@ -14,7 +14,7 @@
 
 namespace PeriDeal
 {
-  /** A flow, or the size of each stress intensity, by name. */
+  /** A flow, a strength, or the size of each stress intensity, by name. */
   struct MeasuredNumbers
   {
     std::map<std::string, double> values;
@@ -71,7 +71,7 @@ namespace PeriDeal
     void refuse_forces_at_points(Simulation<dim> &simulation) const;
 
     /** Numbers of a solution, none where fields are measured or its mesh is too coarse for them. */
-    MeasuredNumbers numbers(Simulation<dim> &simulation) const;
+    MeasuredNumbers numbers(Simulation<dim> &simulation, const Cracks<dim> &cracks) const;
 
     /**
      * How much a solution, the finer one, differs from another one, relative as section `Accuracy`

@@ -8,6 +8,7 @@
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
+#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/simulation/estimate.h>
@@ -17,13 +18,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <sstream>
 
+#include "growth_choice.h"
 #include "guaranteed.h"
 #include "search.h"
+#include "spending.h"
 
 namespace PeriDeal
 {
@@ -73,7 +75,7 @@ namespace PeriDeal
         , nonlocal(body, text, communicator, measure, LimitOfAttempts::nonlocal)
         , is_nonlocal(scene.peridynamics.horizon > 0.)
         , moves(scene.deforms && !scene.elasticity.is_static()) // with steps as long as cells allow
-        , start(Clock::now())
+        , spending(scene.accuracy, communicator)
       {}
 
       /** Compute, and write all files. */
@@ -86,8 +88,6 @@ namespace PeriDeal
       }
 
     private:
-      using Clock = std::chrono::steady_clock;
-
       /** Until the estimate is good enough, or nothing more may be spent. */
       void search()
       {
@@ -141,12 +141,6 @@ namespace PeriDeal
         return "by the smallest steps in time ('Tolerance' in section 'Time'), which leave about " +
                rounded_text(100. * time_error) +
                " %: something jumps in time, or linear systems are not solved well enough";
-      }
-
-      double elapsed() const
-      {
-        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-        return Utilities::MPI::max(seconds, communicator);
       }
 
       /** Of the chosen solution, all in all; negative if it is not known. */
@@ -222,7 +216,7 @@ namespace PeriDeal
           << "is too small for an estimate of the error, which needs some solutions: one on the coarsest mesh takes "
           << loose.wall_time << " s.";
         scene.accuracy.refuse(scene.accuracy.budget > 0. &&
-                                elapsed() + 2. * loose.wall_time > scene.accuracy.budget,
+                                spending.elapsed() + 2. * loose.wall_time > scene.accuracy.budget,
                               "Budget",
                               what.str());
         Tried<dim> strict     = solution(finer * tolerance);
@@ -231,7 +225,7 @@ namespace PeriDeal
         };
         for (time_error = difference();
              time_error > share * scene.accuracy.tolerance && finer * tolerance > finest &&
-             may_take(2. * strict.wall_time);
+             spending.may_take(2. * strict.wall_time);
              time_error = difference())
           {
             tolerance *= finer;
@@ -270,24 +264,8 @@ namespace PeriDeal
           return "the number of halvings of a mesh ('Refinements' in section 'Domain')";
         // Where cracks grow it is computed again for the results on the way.
         const double runs = family.last().simulation->has_kept() ? 1. : 2.;
-        return limit_of(runs * family.expected_time(attempt), family.expected_memory(attempt));
-      }
-
-      /** Whether so many seconds leave half of the budget. Collective. */
-      bool may_take(const double seconds) const
-      {
-        return scene.accuracy.budget <= 0. || elapsed() + seconds < 0.5 * scene.accuracy.budget;
-      }
-
-      /** Whether so many seconds and bytes may still be spent: what forbids it, or nothing. */
-      std::string limit_of(const double seconds, const double bytes) const
-      {
-        if (scene.accuracy.budget > 0. && elapsed() + seconds > scene.accuracy.budget)
-          return "'Budget'";
-        const double taken = Utilities::MPI::sum(resident_memory(), communicator);
-        const bool   given = scene.accuracy.memory > 0.;
-        const double left  = given ? scene.accuracy.memory - taken : available_memory(communicator);
-        return bytes < left ? "" : given ? "'Memory'" : "the memory of the machine";
+        return spending.limit_of(runs * family.expected_time(attempt),
+                                 family.expected_memory(attempt));
       }
 
       /** Throws UserError if nothing can be said of an error yet. */
@@ -301,7 +279,7 @@ namespace PeriDeal
         if (limit == "'Memory'")
           what << "the next one would take more.";
         else
-          what << "after " << elapsed() << " s the next one would take some "
+          what << "after " << spending.elapsed() << " s the next one would take some "
                << family.expected_time(next) << " s.";
         scene.accuracy.refuse(limit == "'Budget'", "Budget", what.str());
         scene.accuracy.refuse(limit == "'Memory'", "Memory", what.str());
@@ -331,7 +309,7 @@ namespace PeriDeal
       {
         family.compute(attempt);
         if (family.asks_richer() &&
-            limit_of(family.time_of_richer(), family.memory_of_richer()).empty())
+            spending.limit_of(family.time_of_richer(), family.memory_of_richer()).empty())
           family.ask_richer();
         const Tried<dim>  &last  = family.last();
         const double       error = family.error().error;
@@ -422,7 +400,7 @@ namespace PeriDeal
       Search<dim>               classical, nonlocal;
       Search<dim>              *chosen = &classical;
       const bool                is_nonlocal, moves;
-      const Clock::time_point   start;
+      const Spending            spending;
       double                    time_error = 0., horizon_effect = 0.;
       Json                      history = Json::array();
       Attempt                   next;
@@ -444,6 +422,8 @@ namespace PeriDeal
     AssertThrow(mode != RunMode::resume,
                 UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
     refuse_choice(scene);
+    if (measures_growth(scene.accuracy))
+      return run_growth(scene, text, communicator, mode, quiet);
     const BodyOfChoice<dim> body(scene, communicator);
     Choice<dim>(body, text, communicator, quiet).run(mode);
   }
@@ -457,6 +437,8 @@ namespace PeriDeal
   {
     const Progress progress(communicator, quiet);
     refuse_choice(scene);
+    if (measures_growth(scene.accuracy))
+      return describe_growth(scene, text, communicator, quiet);
     const bool               is_nonlocal = scene.peridynamics.horizon > 0.;
     const BodyOfChoice<dim>  body(scene, communicator);
     const Attempts<dim>      attempts(body,

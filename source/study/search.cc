@@ -7,6 +7,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
+#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -90,16 +91,18 @@ namespace PeriDeal
     one.attempt                  = attempt;
     one.scene                    = scene_variant(scene, attempt.settings);
     one.scene->general.automatic = true;
-    one.simulation  = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
-    const bool many = !scene.time.steady && scene.deforms; // numbers, at all times
+    one.simulation   = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
+    const bool grows = measures_growth(scene.accuracy);
+    const bool many  = !scene.time.steady && scene.deforms && !grows; // numbers, at all times
     one.simulation->solve([&](const double t) {
-      if (!scene.time.steady)
+      if (!scene.time.steady && !grows)
         one.seen.push_back(measure.see(one.simulation->problem(), one.scene->cracks));
       if (many)
-        one.numbers.add(measure.numbers(*one.simulation), " at t = " + number_text(t));
+        one.numbers.add(measure.numbers(*one.simulation, one.scene->cracks),
+                        " at t = " + number_text(t));
     });
     if (!many)
-      one.numbers = measure.numbers(*one.simulation);
+      one.numbers = measure.numbers(*one.simulation, one.scene->cracks);
     one.cells = one.simulation->problem().dofs().get_triangulation().n_global_active_cells();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     one.wall_time        = Utilities::MPI::max(seconds, communicator);
@@ -210,7 +213,7 @@ namespace PeriDeal
              largest_error(steps) <= tolerance;
     // A low order is that of something rough, which comes unevenly.
     constexpr double rough = 0.7, careful = 0.8;
-    const bool is_uneven = family.lowest_order() >= family.best_order();
+    const bool       is_uneven = family.lowest_order() >= family.best_order();
     if ((is_uneven || now.order < rough * family.best_order()) && now.error > careful * tolerance)
       return false;
     return steps.size() > 3 || now.order > 0.5 * family.best_order();

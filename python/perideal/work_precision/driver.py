@@ -18,7 +18,7 @@ from .. import program
 from ..drivers import mistake_in, require_scene, write_text
 from ..program import Error, settings
 from ..server import Server
-from . import tables
+from . import growth, tables
 from .evaluation import ComputedRow, evaluate
 from .families import FAMILIES
 from .lattice import Cells, n_vertices, to_text
@@ -32,7 +32,7 @@ MOST_DIRECT, MOST_DIRECT_OF_FEW = 100, 10
 # What is the same in all rows, stronger than the scene.
 OUTPUT = {"Domain/Node spacing": "", "Coupling/Certificate": "false", "Output/Fields": "none", "Output/Write at": "", "Output/Write every": "",
           "Output/Probes": "", "Output/Line": ""}
-SUFFIXES = {"field": "", "opening": "_opening", "stress intensity": "_intensity"}
+SUFFIXES = {"field": "", "opening": "_opening", "stress intensity": "_intensity", "strength": "_strength", "path": "_path"}
 
 
 @dataclasses.dataclass
@@ -76,13 +76,17 @@ def _decided_entries(comparison: str) -> List[str]:
 def _own_settings(facts: dict, plan: Plan, row: Row) -> Dict[str, str]:
     """Of this row alone, stronger than what all have."""
     own = dict(row.settings)
-    if row.role != "reference":
+    if plan.measure == "path" and row.role == "method":
+        own["Output/Fields"] = "vtu"  # with the cracks
+    if plan.comparison == "growth":
+        own["Output/Grid"] = ""
+    elif row.role != "reference":
         own["Output/Grid"] = "" if row.role == "pick" else to_text(row.cells)
     if not row.is_chosen:
         own["Domain/Cells"] = to_text(row.cells)
         if n_vertices(row.cells) <= MOST_DIRECT:
             own["Solver/Direct solver up to"] = str(MOST_DIRECT_OF_FEW)
-    if row.role == "reference":
+    if row.role == "reference" and not row.is_chosen:
         own["Output/Grid"] = " ; ".join(map(to_text, plan.lattices()))
         own["Time/Tolerance"] = "1e-7"  # the error in time out of sight
     if plan.probes and row.role != "pick":
@@ -129,8 +133,9 @@ def _study_file(facts: dict, plan: Plan, scene: str, options: Options, output: s
             "varied": _decided_entries(plan.comparison), "rows": rows}
 
 
-def _no_choice(server: Server, scene: str, overrides: Sequence[str]) -> str:
+def _no_choice(server: Server, scene: str, options: Options) -> str:
     """What keeps `Models = auto` from choosing for a scene, or nothing."""
+    overrides = [*options.overrides, *([f"Accuracy/Measure={options.measure}"] if options.measure in growth.MEASURES else [])]
     try:
         return server.describe(scene, [*overrides, "Models=auto", "Peridynamics/Horizon=", *settings(OUTPUT)])["no choice"]
     except Error as error:
@@ -255,9 +260,9 @@ def run(scene: str, options: Options = Options()) -> str:
         overrides = [*options.overrides, "Models=finite elements", "Peridynamics/Surface correction=none", *settings(OUTPUT)]
         facts = server.describe(scene, overrides)
         require_comparable(facts)
-        comparison = comparison_of(facts)
+        comparison = comparison_of(facts, options.measure)
         _refuse_overrides(options.overrides, _decided_entries(comparison))
-        no_choice = _no_choice(server, scene, options.overrides) if options.picks else ""
+        no_choice = _no_choice(server, scene, options) if options.picks or options.measure in growth.MEASURES else ""
         plan = make_plan(facts, options.measure, options.cells, options.reference, options.budget, options.picks, no_choice)
         _leave_out_impossible(plan, server, scene, [*overrides, *settings(_common_settings(comparison))])
     output = options.output or f"output/studies/{Path(scene).stem}_work_precision{SUFFIXES[plan.measure]}"

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..program import Error
 from ..results import Results, select
-from . import lattice, pareto
+from . import growth, lattice, pareto
 from .families import Family
 from .lattice import Cells, sum_in_turn
 from .plan import Plan, Row
@@ -116,6 +116,7 @@ class Reference:
     cracked: bool = True  # the cracks lie on cell faces; else of degree 2
     observed_order: float = math.nan
     order: float = 0.0
+    chosen: bool = False  # by the program, for a small tolerance
     own_error: float = 0.0  # of the extrapolated solution, relative like all errors
 
 
@@ -190,6 +191,8 @@ class Limit:
 def evaluate(facts: dict, plan: Plan, computed: List[ComputedRow]) -> WorkResults:
     """Read the rows' values and compare them. Raises Error if the reference or the values of a finished row are missing."""
     results = WorkResults(Reference(cracked=bool(facts["cracks"])))
+    if plan.comparison == "growth":
+        return _evaluate_growth(facts, plan, computed, results)
     limit = Limit()
     if plan.reference:
         solutions = _solutions(plan, computed)
@@ -212,6 +215,37 @@ def evaluate(facts: dict, plan: Plan, computed: List[ComputedRow]) -> WorkResult
         else:
             results.without.append(planned.name)
     _compare_in_time(facts, plan, computed, results)
+    return results
+
+
+def _evaluate_growth(facts: dict, plan: Plan, computed: List[ComputedRow], results: WorkResults) -> WorkResults:
+    """Strengths and paths against those of the first row, which the program has chosen for a small tolerance."""
+    if not computed[0].is_finished:
+        raise Error(f"work_precision: the row '{plan.rows[0].name}' is not there, and without the reference nothing is known of errors" +
+                    (f": {computed[0].message}" if computed[0].message else ". Compute it, too: --only has to name 'reference'."))
+    expected = computed[0].summary
+    longest = max(upper - lower for lower, upper in zip(facts["lower"], facts["upper"]))
+    results.reference.exact, results.reference.chosen, results.steady = False, True, False
+    results.reference.own_error = float(expected["accuracy"]["estimate"])
+
+    def error(row, model):
+        if plan.measure == "path":
+            found = growth.chosen_path(row.summary) if model == "auto" else growth.grown_path(row.folder, model)
+            return growth.distance(found, growth.chosen_path(expected), longest)
+        return abs(growth.strength(row.summary, model) / growth.strength(expected, "auto") - 1)
+
+    for planned, row in zip(plan.rows, computed):
+        if not row.is_finished or planned.role == "reference":
+            continue
+        if planned.role == "pick":
+            results.picks.append(_pick(planned, row, error(row, "auto")))
+            continue
+        entry = _costs(planned, row, facts, results.steady)
+        entry.error = error(row, planned.family.model)
+        if math.isfinite(entry.error):
+            results.rows.append(entry)
+        else:
+            results.without.append(planned.name)
     return results
 
 

@@ -140,6 +140,20 @@ def _in_motion() -> List[Family]:
     return families
 
 
+def _breaking() -> List[Family]:
+    """Bonds that break, everywhere or in a zone that follows them."""
+    families = []
+    for m in ("3", "4", "6"):
+        families.append(_plain_bonds("breaking", m, "auto", "auto"))
+        families[-1].name = f"PD, m = {m}"
+    for scheme, overlap, ms in (("exchange", "0", ("3", "4", "6")), ("blending", "1", ("4",))):
+        for m in ms:
+            family = _plain(f"coupled, {scheme}, m = {m}", COUPLED, "auto", "auto")
+            family.settings.update({"Peridynamics/Horizon ratio": m, "Coupling/Zone": "follow", "Coupling/Scheme": scheme, "Coupling/Overlap": overlap})
+            families.append(family)
+    return families
+
+
 # By what a scene lets one choose among.
 FAMILIES = {"cracks": _around_cracks(), "solid cracks": _bodies_with_cracks(), "field": _without_cracks(deforms=False),
-            "solid": _without_cracks(deforms=True), "motion": _in_motion()}
+            "solid": _without_cracks(deforms=True), "motion": _in_motion(), "growth": _breaking()}

@@ -7,12 +7,12 @@ import math
 from typing import Dict, List, Optional
 
 from ..program import Error
-from . import lattice
+from . import growth, lattice
 from .families import FAMILIES, Family
 from .lattice import Cells
 from ..words import did_you_mean, number_text, readable_count
 
-MEASURES = ("field", "opening", "stress intensity")
+MEASURES = ("field", "opening", "stress intensity", *growth.MEASURES)
 N_RUNGS = 4
 
 
@@ -36,7 +36,7 @@ class Row:
     @property
     def is_chosen(self) -> bool:
         """The program chooses the model and the mesh."""
-        return self.role in ("pick", "pick values")
+        return self.role in ("pick", "pick values") or "Accuracy/Measure" in self.settings
 
     @property
     def may_fail(self) -> bool:
@@ -62,8 +62,10 @@ class Plan:
         return sorted({row.cells for row in self.rows if row.role in ("method", "pick values")})
 
 
-def comparison_of(facts: dict) -> str:
+def comparison_of(facts: dict, measure: str = "field") -> str:
     """Among which methods a scene lets one choose."""
+    if measure in growth.MEASURES:
+        return "growth"
     if facts["cracks"]:
         return "solid cracks" if facts["deforms"] else "cracks"
     return "field" if not facts["deforms"] else "motion" if facts["moves"] else "solid"
@@ -86,7 +88,7 @@ def require_comparable(facts: dict) -> None:
 def parse_measure(text: str) -> str:
     """Raises Error for words that are no measure."""
     if text not in MEASURES:
-        raise Error(f"command line: --measure '{text}': needs one of field, opening, stress intensity." + did_you_mean(text, MEASURES))
+        raise Error(f"command line: --measure '{text}': needs one of field, opening, stress intensity, strength, path." + did_you_mean(text, MEASURES))
     return text
 
 
@@ -98,11 +100,14 @@ def make_plan(facts: dict, measure: str, cells: str = "", reference: str = "", b
     choose for the scene.
     """
     dim = facts["dimension"]
-    plan = Plan(parse_measure(measure), comparison_of(facts))
+    plan = Plan(parse_measure(measure), comparison_of(facts, measure))
     plan.ladder = lattice.parse_ladder(cells, "--cells", dim, 2) if cells else lattice.default_ladder(tuple(facts["cells"]), N_RUNGS)
     if len(plan.ladder) < 2:
         raise Error(f"work_precision needs at least two lattices, but 'Cells' in section 'Domain', {lattice.to_text(facts['cells'])}, is too "
                     "coarse to be halved. Give more cells, or name lattices with --cells.")
+    if measure in growth.MEASURES:
+        _add_growth(plan, facts, budget, picks, no_choice)
+        return plan
     if facts["exact solution"] and reference and measure != "stress intensity":
         raise Error("command line: --reference: the scene has a 'Solution' in section 'Reference', with which it is compared.")
     if measure != "field" and (plan.comparison != "solid cracks" or dim != 2):
@@ -121,6 +126,19 @@ def make_plan(facts: dict, measure: str, cells: str = "", reference: str = "", b
     if not facts["steady"] and plan.comparison in ("cracks", "field"):
         _add_steppers(plan)
     return plan
+
+
+def _add_growth(plan: Plan, facts: dict, budget: float, picks: bool, no_choice: str) -> None:
+    """Bonds that break, against what the program chooses for a small tolerance."""
+    growth.require_growth(facts, plan.measure)
+    if no_choice:
+        raise Error(f"work_precision has nothing to compare with: {no_choice}")
+    least = growth.REFERENCE[plan.measure]
+    plan.rows.append(Row(f"reference, auto, {least}", "reference", plan.ladder[-1], growth.settings_of_choice(plan.measure, least), tolerance=float(least)))
+    for family in FAMILIES[plan.comparison]:
+        _add_rows(plan, facts, family, budget)
+    for tolerance in growth.PICKED if picks else ():
+        plan.rows.append(Row(f"auto, {tolerance}", "pick", plan.ladder[-1], growth.settings_of_choice(plan.measure, tolerance), tolerance=float(tolerance)))
 
 
 def _add_reference(plan: Plan, facts: dict, given: str) -> None:

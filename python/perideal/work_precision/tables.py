@@ -14,10 +14,16 @@ from .plan import Plan
 from ..words import full_precision
 
 TARGET_ERRORS = (1e-2, 1e-3)
+TARGETS_OF_GROWTH = (1e-1, 5e-2)
 COLUMNS = ("name", "family", "model", "cells", "node spacing", "unknowns", "bonds", "nonzeros", "nonzeros applied", "iterations",
            "operator applications", "work", "error", "set-up time", "solution time", "wall time", "memory", "peak memory", "tolerance", "front",
            "dominated by", "front in wall time", "dominated in wall time by")
 COLUMNS_IN_TIME = ("name", "stepper", "tolerance", "steps", "iterations", "operator applications", "work", "error", "wall time")
+
+
+def target_errors(plan: Plan):
+    """Whose costs are told."""
+    return TARGETS_OF_GROWTH if plan.comparison == "growth" else TARGET_ERRORS
 
 
 def _number(value: float):
@@ -83,7 +89,7 @@ def _entry_of_cost(cost: Cost) -> dict:
     return entry
 
 
-def _entry_of_family(results: WorkResults, family: Family) -> dict:
+def _entry_of_family(plan: Plan, results: WorkResults, family: Family) -> dict:
     rows = results.of_family(family)
     return {
         "name": family.name, "model": family.model, "set": family.settings,
@@ -91,12 +97,14 @@ def _entry_of_family(results: WorkResults, family: Family) -> dict:
         "rows": [row.name for row in rows],
         "at error": [{"error": error,
                       "work": _entry_of_cost(cost_at_error(results.points(family), error)),
-                      "wall time": _entry_of_cost(cost_at_error(results.points(family, in_time=True), error))} for error in TARGET_ERRORS]}
+                      "wall time": _entry_of_cost(cost_at_error(results.points(family, in_time=True), error))} for error in target_errors(plan)]}
 
 
 def _entry_of_reference(plan: Plan, reference: Reference) -> dict:
     if reference.exact:
         return {"kind": "exact solution"}
+    if reference.chosen:
+        return {"kind": "what Models = auto finds for a small tolerance", "tolerance": plan.rows[0].tolerance, "own error": reference.own_error}
     return {"kind": "finite elements with the cracks on cell faces, extrapolated" if reference.cracked else
                     "finite elements of degree 2, extrapolated",
             "cells": [lattice.to_text(cells) for cells in plan.reference], "observed order": _number(reference.observed_order),
@@ -118,7 +126,7 @@ def work_json(study: dict, scene: str, plan: Plan, results: WorkResults) -> str:
         "reference": _entry_of_reference(plan, results.reference), "left out": _left_out(plan, results), "columns": COLUMNS,
         "rows": _lines(results), "front": [row.name for row in results.front()],
         "front in wall time": [row.name for row in results.front(in_time=True)],
-        "families": [_entry_of_family(results, family) for family in FAMILIES[plan.comparison] if results.of_family(family)],
+        "families": [_entry_of_family(plan, results, family) for family in FAMILIES[plan.comparison] if results.of_family(family)],
         "picks": [_entry_of_pick(pick) for pick in results.picks], "no picks": plan.no_picks}
     if results.in_time:
         content["in time"] = {"method": results.method_in_time, "error in space": _number(results.error_in_space),
@@ -133,6 +141,8 @@ def _percent(error: float) -> str:
 def _line_of_reference(plan: Plan, reference: Reference) -> str:
     if reference.exact:
         return "Errors against the exact solution."
+    if reference.chosen:
+        return f"Errors against what Models = auto finds for {plan.rows[0].tolerance:g}, estimated to be wrong by {reference.own_error:.1e} itself."
     observed = f"{reference.observed_order:.2f}" if math.isfinite(reference.observed_order) else "none"
     return ("Errors against finite elements " + ("with the cracks on cell faces, " if reference.cracked else "of degree 2, ") +
             ", ".join(map(lattice.name_of, plan.reference)) +
@@ -194,4 +204,4 @@ def work_report(plan: Plan, results: WorkResults) -> str:
         if by is not None:
             text += f"  {row.work:8.3g} {row.error:9.2e} {row.work / by.work if by.work else math.inf:7.3g}  {row.name} < {by.name}\n"
     text += _report_picks(plan, results) + _report_in_time(results)
-    return text + "".join(_report_target(plan, results, error) for error in TARGET_ERRORS)
+    return text + "".join(_report_target(plan, results, error) for error in target_errors(plan))

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include "growth_trace.h"
+
+#include <perideal/base/instantiate.h>
+#include <perideal/base/user_error.h>
+#include <perideal/output/tables.h>
+#include <perideal/scene/lists.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    std::string text_of(const Attempt &attempt, const std::string &entry)
+    {
+      for (const auto &[name, text] : attempt.settings)
+        if (name == entry)
+          return text;
+      return "";
+    }
+
+
+    /** The diagonal of the smallest cells. */
+    double diagonal_of(const Attempt &attempt, const CrackedBox &box)
+    {
+      std::istringstream cells(text_of(attempt, "Domain/Cells"));
+      double             square = 0.;
+      for (unsigned int d = 0; d < box.dim(); ++d)
+        {
+          double n = 1.;
+          cells >> n;
+          cells.ignore(1, ',');
+          square += std::pow((box.upper[d] - box.lower[d]) / n, 2);
+        }
+      return std::sqrt(square);
+    }
+
+
+    /** Whether an end has stress intensities. */
+    bool is_seen(const GriffithState &state, const std::string &name)
+    {
+      return std::any_of(state.ends.begin(), state.ends.end(), [&](const GriffithEnd &end) {
+        return end.name == name;
+      });
+    }
+
+
+    /** Those that grow first, or hardly later, go on. */
+    void grow_first(GrowingCracks &cracks, const GriffithState &state, const double step)
+    {
+      constexpr double                      together = 1.02;
+      const double                          first    = state.load();
+      const std::vector<GrowingCracks::End> ends     = cracks.ends();
+      // Names change as cracks get longer.
+      std::vector<std::pair<GrowingCracks::End, double>> growing;
+      for (const GrowingCracks::End &end : ends)
+        for (const GriffithEnd &one : state.ends)
+          if (one.name == cracks.name(end) && one.load() <= together * first)
+            growing.emplace_back(end, one.kink().angle);
+      for (const auto &[end, angle] : growing)
+        cracks.grow(end, angle, step);
+    }
+  } // namespace
+
+
+  std::size_t GrowthTrace::strongest() const
+  {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < states.size(); ++k)
+      if (states[k].bears > states[best].bears)
+        best = k;
+    return best;
+  }
+
+
+  double GrowthTrace::between_states() const
+  {
+    const std::size_t best = strongest();
+    if (states.size() < 3)
+      return 0.;
+    // The parabola through three states around it, with their distances along the crack.
+    const std::size_t  middle = std::clamp<std::size_t>(best, 1, states.size() - 2);
+    const TracedState &a = states[middle - 1], &b = states[middle], &c = states[middle + 1];
+    const auto         bearing = [](const TracedState &one) { return one.state.strength(); };
+    const double       before  = b.cracks.grown() - a.cracks.grown(),
+                 after         = c.cracks.grown() - b.cracks.grown();
+    if (!(before > 0.) || !(after > 0.))
+      return 0.;
+    const double down = (bearing(a) - bearing(b)) / before, up = (bearing(c) - bearing(b)) / after,
+                 bend = (down + up) / (before + after), slope = up - bend * after;
+    const double top = bend < 0. ? -0.5 * slope / bend : 0.;
+    if (bend >= 0. || top <= -before || top >= after)
+      return 0.;
+    const double highest = bearing(b) + slope * top + bend * top * top;
+    return std::max(0., highest / states[best].bears - 1.);
+  }
+
+
+  template <int dim>
+  CrackTracer<dim>::CrackTracer(const Scene<dim>         &scene,
+                                const SceneText          &text,
+                                const MPI_Comm            communicator,
+                                const MeasuredError<dim> &measure)
+    : scene(scene)
+    , text(text)
+    , communicator(communicator)
+    , measure(measure)
+  {}
+
+
+  template <int dim>
+  std::vector<Setting> CrackTracer<dim>::settings(const GrowingCracks &cracks,
+                                                  const double         end_time) const
+  {
+    return {{"Cracks/Segments", cracks.segments()},
+            {"Material/Fracture energy", ""},
+            {"Elasticity/Breaking", "auto"},
+            {"Elasticity/Contact", "auto"},
+            {"Elasticity/Solver", "linear"},
+            {"Coupling/Zone share", "0.5"},
+            {"Time/End time", full_precision(end_time)},
+            {"Time/Time step", full_precision(end_time)},
+            {"Output/Write at", ""},
+            {"Output/Write every", ""}};
+  }
+
+
+  template <int dim>
+  double CrackTracer<dim>::fineness_for(const GrowingCracks &cracks,
+                                        const Attempts<dim> &attempts) const
+  {
+    // A ring reaches over half of the last stretch, and needs two cells (crack_end_integrals()).
+    constexpr double ring = 0.45 * 0.5, more = 1.1, most = 50.;
+    const CrackedBox box      = cracked_box(scene);
+    double           shortest = std::numeric_limits<double>::max();
+    for (const GrowingCracks::End &end : cracks.ends())
+      shortest = std::min(shortest, cracks.last_stretch(end));
+    double fineness = attempts.coarsest();
+    while (2. * diagonal_of(attempts.at(fineness), box) > ring * shortest &&
+           fineness < most * attempts.coarsest())
+      fineness *= more;
+    return fineness;
+  }
+
+
+  template <int dim>
+  TracedState CrackTracer<dim>::state_of(const GrowingCracks &cracks,
+                                         const double         time,
+                                         const double         fineness) const
+  {
+    constexpr unsigned int  n_tries = 3;
+    constexpr double        finer   = 1.5;
+    const auto              variant = scene_variant(scene, settings(cracks, time));
+    const BodyOfChoice<dim> body(*variant, communicator);
+    const Search<dim>       search(body, text, communicator, measure, LimitOfAttempts::classical);
+    TracedState             one{cracks, {}, {}};
+    one.fineness = fineness * fineness_for(cracks, search.attempts());
+    for (unsigned int k = 0;; ++k, one.fineness *= finer)
+      {
+        one.attempt            = search.attempts().at(one.fineness);
+        const Tried<dim> tried = search.solve(one.attempt);
+        one.state =
+          griffith_state(scene, tried.scene->cracks, tried.simulation->found()["models"]["auto"]);
+        const auto &ends = cracks.ends();
+        if (k + 1 == n_tries ||
+            std::all_of(ends.begin(), ends.end(), [&](const GrowingCracks::End &end) {
+              return is_seen(one.state, cracks.name(end));
+            }))
+          return one;
+      }
+  }
+
+
+  template <int dim>
+  void CrackTracer<dim>::refuse_loads(const TracedState &state) const
+  {
+    constexpr double slack = 1e-4, pressed = 0.05;
+    const auto       refuse = [&](const bool fault, const std::string &what) {
+      scene.accuracy.refuse(fault,
+                            "Measure",
+                            "is '" + scene.accuracy.measure_text() + "', but " + what);
+    };
+    refuse(!(state.state.force > 0.), "no side that is held or loaded bears a force.");
+    refuse(state.state.ends.empty(),
+           "no crack has stress intensities: they need the same moduli everywhere, and room around "
+           "the ends of cracks for some cells.");
+    for (const GriffithEnd &end : state.state.ends)
+      refuse(end.mode_1 < -pressed * std::abs(end.mode_2) && end.mode_1 < -pressed * end.toughness,
+             end.name +
+               " is pressed together by the loads (K_I < 0), where faces that touch matter. "
+               "Give 'Horizon' in section 'Peridynamics' as a length.");
+    const GriffithState half  = state_of(state.cracks, 0.5 * scene.time.end_time, 1.).state;
+    double              apart = std::abs(2. * half.force / state.state.force - 1.);
+    for (std::size_t k = 0; k < half.ends.size() && k < state.state.ends.size(); ++k)
+      apart = std::max(apart,
+                       std::abs(2. * half.ends[k].mode_1 - state.state.ends[k].mode_1) /
+                         std::hypot(state.state.ends[k].mode_1, state.state.ends[k].mode_2));
+    refuse(
+      apart > slack,
+      "loads are not in proportion to t. Give displacements, tractions and forces as numbers, or formulas of "
+      "x and y, times t.");
+  }
+
+
+  template <int dim>
+  GrowthTrace CrackTracer<dim>::follow(const GrowingCracks &from, const TraceControl &control) const
+  {
+    using Clock                    = std::chrono::steady_clock;
+    constexpr double       fallen  = 0.5; // of the loads that they bore: they run through
+    constexpr unsigned int most    = 400;
+    const auto             start   = Clock::now();
+    const auto             seconds = [&] {
+      return Utilities::MPI::max(std::chrono::duration<double>(Clock::now() - start).count(),
+                                 communicator);
+    };
+    GrowthTrace trace;
+    trace.step            = control.step;
+    GrowingCracks cracks  = from;
+    double        reached = 0., best = 0.; // share of the loads, largest force
+    while (trace.states.size() < most)
+      {
+        const double before = seconds();
+        TracedState  now    = state_of(cracks, scene.time.end_time, control.fineness);
+        if (trace.states.empty())
+          refuse_loads(now);
+        for (const GrowingCracks::End &end : std::vector<GrowingCracks::End>(cracks.ends()))
+          if (!is_seen(now.state, now.cracks.name(end)))
+            cracks.let_through(end); // so near to a side that there is no room for a ring
+        const double load = now.state.load();
+        if (load > 1. && !trace.states.empty() && trace.states.back().state.load() < 1.)
+          {
+            const TracedState &last = trace.states.back();
+            const double       share =
+              (1. - last.state.load()) / (std::min(load, 2.) - last.state.load());
+            cracks = last.cracks;
+            grow_first(cracks, last.state, share * control.step);
+            now       = state_of(cracks, scene.time.end_time, control.fineness);
+            now.bears = std::min(1., std::max(reached, now.state.load())) * now.state.force;
+            trace.states.push_back(std::move(now));
+            break;
+          }
+        now.bears = load >= reached ? now.state.strength() : 0.;
+        reached   = std::max(reached, load);
+        best      = std::max(best, now.bears);
+        trace.states.push_back(std::move(now));
+        const TracedState &last = trace.states.back();
+        trace.ends_early =
+          !control.to_end && reached < 1. &&
+          ((trace.states.size() > 2 && last.state.force <= best) || load < fallen * reached);
+        trace.is_stopped = control.may_go_on && !control.may_go_on(seconds() - before);
+        if (reached >= 1. || trace.ends_early || cracks.ends().empty() || trace.is_stopped)
+          break;
+        grow_first(cracks, last.state, control.step);
+        if (cracks.ends().empty())
+          break;
+      }
+    trace.paths   = cracks.paths();
+    trace.seconds = seconds();
+    return trace;
+  }
+
+
+  PERIDEAL_INSTANTIATE_CLASS(class CrackTracer);
+} // namespace PeriDeal
