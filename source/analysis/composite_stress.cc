@@ -134,7 +134,7 @@ namespace PeriDeal
   {
     Point<2> middle;
     for (const Point<2> &corner : corners)
-      middle += corner / corners.size();
+      middle += corner / double(corners.size());
     const unsigned int n_points = polynomials.points.size();
     weights.resize(n_sides * n_points);
     shape_gradients.fill(Eigen::MatrixXd(fe.n_dofs_per_cell(), weights.size()));

@@ -221,9 +221,9 @@ namespace PeriDeal
 
 
   /**
-   * At most so far a rigid motion r of a cell moves any of its places, r nearest to a displacement v
-   * of energy norm 1 that is 0 where it is given. On a face |v - r| <= trace sqrt(korn) |eps(v)|, so
-   * that the motions of neighbours differ little there, and not much more elsewhere; a path from
+   * At most so far a rigid motion r of a cell moves any of its places, r nearest to a displacement
+   * v of energy norm 1 that is 0 where it is given. On a face |v - r| <= trace sqrt(korn) |eps(v)|,
+   * so that the motions of neighbours differ little there, and not much more elsewhere; a path from
    * any cell leads to what is held.
    */
   double ElasticBounds<2>::Parts::largest_motion(const StressProblem<2> &problem) const

@@ -46,7 +46,7 @@ namespace PeriDeal
   {
     Point<2> middle;
     for (const Point<2> &corner : corners)
-      middle += corner / corners.size();
+      middle += corner / double(corners.size());
     double outer = 0., inner = std::numeric_limits<double>::max();
     for (const Point<2> &corner : corners)
       outer = std::max(outer, corner.distance(middle));

@@ -262,7 +262,7 @@ namespace PeriDeal
     {
       Point<dim> middle;
       for (const Point<dim> &corner : corners)
-        middle += corner / corners.size();
+        middle += corner / double(corners.size());
       const auto coordinates = [&](const MappedPoints<dim> &at) {
         Eigen::MatrixXd x(at.points.size(), dim);
         for (unsigned int q = 0; q < at.points.size(); ++q)

@@ -66,11 +66,11 @@ namespace PeriDeal
    * Fluxes through the faces of the cells around a vertex: those that make sum of factor (o
    * stiffness o/2 - loads o) the smallest, where the fluxes through all faces that are not shared
    * by two of the cells and are not open are given, others are continuous, and out of each cell
-   * flows its mean. Of several components, which are those of forces, the moments of each cell about
-   * its middle are given, too, in units of its size: of t_i x_j - t_j x_i for i < j. Where there are
-   * no such fluxes, as where no face of cells that share faces is open, means and moments are changed
-   * as little as makes them possible. Factorizations are kept, and serve all vertices around which
-   * all is alike.
+   * flows its mean. Of several components, which are those of forces, the moments of each cell
+   * about its middle are given, too, in units of its size: of t_i x_j - t_j x_i for i < j. Where
+   * there are no such fluxes, as where no face of cells that share faces is open, means and moments
+   * are changed as little as makes them possible. Factorizations are kept, and serve all vertices
+   * around which all is alike.
    */
   class PatchSolver
   {

@@ -89,8 +89,9 @@ namespace PeriDeal
 
 
   /**
-   * Fluxes, of one component or several, as sums over all vertices that do not hang of fluxes on the
-   * support of their hat function (PatchSolver). The process that owns a vertex solves its problem.
+   * Fluxes, of one component or several, as sums over all vertices that do not hang of fluxes on
+   * the support of their hat function (PatchSolver). The process that owns a vertex solves its
+   * problem.
    */
   template <int dim>
   class VertexPatches

@@ -379,4 +379,101 @@ namespace PeriDeal
             words);
         }
   }
+
+
+  namespace
+  {
+    /** How long the bound of a larger problem takes, and operator and solution. */
+    void print_seconds(const SolidCase &test, const Settings &more, const std::string &words)
+    {
+      const auto seconds_since = [](const std::clock_t start) {
+        return double(std::clock() - start) / CLOCKS_PER_SEC;
+      };
+      const std::clock_t start = std::clock();
+      const BoundedSolid solved(test.settings + more);
+      const double       of_solution = seconds_since(start);
+      const std::clock_t again       = std::clock();
+      const EnergyBound  bound       = solved.bounds.of(solved.u);
+      const double       of_bound    = seconds_since(again);
+      EXPECT_GT(bound.bound, 0.);
+      if (this_process() == 0)
+        std::printf("| %s | %s | %u | %.2f | %.2f | %.2f |\n",
+                    test.name.c_str(),
+                    words.c_str(),
+                    static_cast<unsigned int>(solved.u.size()),
+                    of_solution,
+                    of_bound,
+                    of_bound / of_solution);
+    }
+  } // namespace
+
+
+  TEST(ElasticBounds, fields_that_elements_have)
+  {
+    if (prints_tables())
+      {
+        print_seconds(plane_stress(), square(64) + of_degree(2), "Q2");
+        print_seconds(plane_stress(), square(48) + of_degree(3), "Q3");
+        print_seconds(graded(), square(64) + of_degree(2), "Q2");
+        print_seconds(distorted(48), of_degree(2), "Q2");
+      }
+    const Settings bent = material("2", "0", "stress") +
+                          Settings{{"Material/Phases/Regions", "stiff: x > 0.5"},
+                                   {"Material/Phases/Young modulus", "stiff: 8"},
+                                   {"Boundary conditions/Symmetry", "bottom"},
+                                   {"Boundary conditions/Displacement", "left: 0, free"},
+                                   {"Boundary conditions/Traction", "right: 1, 0"}};
+    const BoundedSolid pulled(bent + square(6) + of_degree(2));
+    const EnergyBound  bound = pulled.bounds.of(pulled.u);
+    EXPECT_LT(bound.bound, 1e-8);
+    EXPECT_GT(bound.norm, 0.1);
+    const BoundedSolid warm(material("2", "0.3", "strain") + square(4) + of_degree(2) +
+                            Settings{{"Material/Thermal expansion", "0.1"},
+                                     {"Elasticity/Temperature change", "3"},
+                                     {"Boundary conditions/Symmetry", "left ; bottom"}});
+    EXPECT_LT(warm.bounds.of(warm.u).bound, 1e-8);
+    EXPECT_GT(warm.bounds.of(warm.u).norm, 0.1);
+  }
+
+
+  TEST(ElasticBounds, what_they_cannot_be_had_for)
+  {
+    const auto words = [](const Settings &settings) {
+      Scene<2> scene;
+      scene.general.set("Models", "finite elements");
+      scene.general.set("Physics", "elasticity");
+      set(scene, settings);
+      return ElasticBounds<2>::why_not(scene);
+    };
+    const Settings plain = plane_stress().settings + square(8);
+    EXPECT_EQ(words(plain + of_degree(2)), "");
+    EXPECT_NE(words(plain).find("'Degree' is 1"), std::string::npos);
+    EXPECT_NE(words(plain + of_degree(2) + Settings{{"Elasticity/Kinematics", "full"}}), "");
+    EXPECT_EQ(words(crack_tip().settings + square(8) + of_degree(2)), "");
+  }
+
+
+  TEST(ElasticBounds, same_on_every_number_of_processes)
+  {
+    const auto compare = [](const SolidCase &test, const Settings &more) {
+      const BoundedSolid one(test.settings + more, MPI_COMM_SELF), all(test.settings + more);
+      const EnergyBound  a = one.bounds.of(one.u), b = all.bounds.of(all.u);
+      EXPECT_GT(a.bound, 0.) << test.name;
+      EXPECT_NEAR(a.bound, b.bound, 1e-6 * a.bound) << test.name;
+      EXPECT_NEAR(a.flux, b.flux, 1e-7 * a.bound) << test.name;
+      EXPECT_NEAR(a.values, b.values, 1e-7 * a.bound) << test.name;
+      EXPECT_NEAR(a.oscillation, b.oscillation, 1e-7 * a.bound) << test.name;
+      EXPECT_NEAR(a.norm, b.norm, 1e-7 * a.norm) << test.name;
+      double sum = 0.;
+      for (const double square : b.cells)
+        sum += square;
+      EXPECT_NEAR(std::sqrt(Utilities::MPI::sum(sum, MPI_COMM_WORLD)), a.flux, 1e-7 * a.bound)
+        << test.name;
+    };
+    const Settings half_fine{{"Domain/Coarsening", "1"}, {"Domain/Fine where", "0.3 - x"}};
+    compare(tractions(), square(8) + of_degree(2));
+    compare(crack_tip(), square(8) + of_degree(2));
+    compare(plane_stress(), square(16) + half_fine + of_degree(2));
+    compare(distorted(8), of_degree(3));
+  }
 } // namespace PeriDeal
