@@ -54,12 +54,13 @@ namespace PeriDeal
       if (!cell->at_boundary())
         return;
       const CellCorners<dim> corners = corners_of<dim>(cell);
+      const GivenValue<dim>  value   = given_value(problem);
       for (const unsigned int f : cell->face_indices())
         if (cell->at_boundary(f))
           {
             const MappedPoints<dim> at(mesh.unit.on_faces[f], corners);
             const auto              side = cell->face(f)->boundary_id();
-            if (!has_value(*problem.conditions, side, at))
+            if (!has_value(value, side, at))
               visit(f, side, at, mesh.rim(cell->face(f)));
           }
     }
@@ -138,7 +139,7 @@ namespace PeriDeal
       , solve(solve)
       , layout(
           element_layout(cells_of(op).dof_handler(), static_cast<const Coupling<dim> *>(nullptr)))
-      , mesh(op, body)
+      , mesh(cells_of(op).dof_handler(), body)
     {}
 
     /** A solution that is one for the quadrature of bounds, too, and its flux. */
@@ -235,7 +236,7 @@ namespace PeriDeal
   void EnergyBounds<dim>::Parts::measure(Balanced &solution) const
   {
     const EquilibratedFlux<dim> &flux = *solution.flux;
-    const ValueLifting<dim>      lifting(mesh, solution.problem);
+    const ValueLifting<dim>      lifting(mesh, given_value(solution.problem));
     const MPI_Comm               communicator = cells_of(op).dof_handler().get_communicator();
     EnergyBound                 &bound        = solution.bound;
     bound.cells.assign(cells_of(op).dof_handler().get_triangulation().n_active_cells(), 0.);
@@ -243,10 +244,10 @@ namespace PeriDeal
     std::array<double, 5> squares{}, all{};
     double                least_h = std::numeric_limits<double>::max();
     for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
-      const CellField<dim>  field            = flux.field(cell);
-      const double          square           = flux.difference(cell, field).squaredNorm();
-      const auto           &other            = flux.oscillation(cell);
-      const Eigen::VectorXd lift             = lifting.numbers(cell, solution.u);
+      const CellField<dim>  field  = flux.field(cell);
+      const double          square = flux.difference(cell, field).squaredNorm();
+      const auto           &other  = flux.oscillation(cell);
+      const Eigen::VectorXd lift   = lifting.numbers(cell, mesh.numbers(cell, solution.u));
       bound.cells[cell->active_cell_index()] = square;
       squares[0] += std::pow(std::sqrt(square) + other.cell, 2);
       squares[1] += square;
@@ -395,10 +396,10 @@ namespace PeriDeal
   double EnergyBounds<dim>::Parts::prescribed_energy(const Balanced &solution,
                                                      const Vector   &v) const
   {
-    const ValueLifting<dim> lifting(mesh, solution.problem);
+    const ValueLifting<dim> lifting(mesh, given_value(solution.problem));
     double                  sum = 0.;
     for_each_owned(cells_of(op).dof_handler(), [&](const auto &cell) {
-      const Eigen::VectorXd lift = lifting.numbers(cell, solution.u);
+      const Eigen::VectorXd lift = lifting.numbers(cell, mesh.numbers(cell, solution.u));
       if (lift.size() == 0)
         return;
       const CellField<dim> field(mesh.unit,

@@ -8,69 +8,27 @@
 #include <perideal/base/types.h>
 #include <perideal/operators/diffusion/cell_term.h>
 
-#include <boost/serialization/array.hpp>
-#include <boost/serialization/vector.hpp>
-
-#include <map>
+#include <functional>
 #include <memory>
-#include <unordered_map>
-#include <utility>
+#include <optional>
 #include <vector>
 
-#include "flux_cells.h"
+#include "vertex_patches.h"
 
 namespace PeriDeal
 {
-  /** What all fluxes on the mesh of finite elements share. */
+  /** The value that is given at a place on a side, if one is. */
   template <int dim>
-  class FluxMesh
-  {
-  public:
-    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+  using GivenValue = std::function<std::optional<double>(const dealii::types::boundary_id,
+                                                         const dealii::Point<dim> &)>;
 
-    /** Vertices that do not hang, and what their hats are at those of a cell. */
-    using Hat        = Eigen::Matrix<double, dealii::GeometryInfo<dim>::vertices_per_cell, 1>;
-    using HatsInCell = std::vector<std::pair<dealii::types::global_dof_index, Hat>>;
-
-    /** op must outlive this. Collective. */
-    FluxMesh(const FieldOperator<dim> &op, const BodyParameters<dim> &body);
-
-    const dealii::DoFHandler<dim> &dofs() const
-    {
-      return cells_of(op).dof_handler();
-    }
-
-    HatsInCell hats(const Cell &cell) const;
-
-    /** Those of all faces of a cell. */
-    std::vector<FacePlace> places(const Cell &cell) const;
-
-    /** The process that owns a vertex. */
-    unsigned int owner(const dealii::types::global_dof_index vertex) const;
-
-    /** Numbers of a field, which has ghosts, at the unknowns of a cell. */
-    Eigen::VectorXd numbers(const Cell &cell, const Vector &u) const;
-
-    const UnitCell<dim>   unit;
-    const RimFactors<dim> rim;
-    CondensedCells<dim>   condensed;
-
-  private:
-    Cell linear_cell(const Cell &cell) const
-    {
-      return {&linear->get_triangulation(), cell->level(), cell->index(), linear.get()};
-    }
-
-    const FieldOperator<dim>                      &op;
-    const std::unique_ptr<dealii::DoFHandler<dim>> linear;
-    const HangingNodes<dim>                        hanging;
-    std::vector<dealii::types::global_dof_index>   begins; // vertices of each process
-  };
-
+  /** That of diffusion; the problem must outlive it. */
+  template <int dim>
+  GivenValue<dim> given_value(const FluxProblem<dim> &problem);
 
   /** A value is given on a face of the boundary. */
   template <int dim>
-  bool has_value(const BoundaryConditions<dim>   &conditions,
+  bool has_value(const GivenValue<dim>           &value,
                  const dealii::types::boundary_id side,
                  const MappedPoints<dim>         &at);
 
@@ -86,6 +44,20 @@ namespace PeriDeal
   double transfer_coefficient(const FluxProblem<dim>          &problem,
                               const dealii::types::boundary_id side,
                               const dealii::Point<dim>        &p);
+
+
+  /** What is given through a face of the boundary, made a polynomial of the face. */
+  struct FaceLoad
+  {
+    Eigen::MatrixXd hats;      // coefficients of what leaves, times the hats of the corners
+    double          rest = 0.; // square of what is no polynomial, over the face
+  };
+
+  /** @param entering per area of the unit face, at its points; @param area of these, likewise */
+  template <int dim>
+  FaceLoad face_load(const UnitPoints<dim> &unit,
+                     const Eigen::VectorXd &entering,
+                     const Eigen::VectorXd &area);
 
 
   /**
@@ -146,75 +118,28 @@ namespace PeriDeal
     }
 
   private:
-    /** A cell of a vertex of another process. */
-    struct Message
-    {
-      dealii::types::global_dof_index vertex = 0;
-      unsigned int                    cell = 0, corner = 0;
-      double                          factor = 1., mean = 0.;
-      std::vector<FacePlace>          faces;
-      std::vector<double>             loads, given;
-      std::vector<dealii::Point<dim>> corners;
-
-      template <class Archive>
-      void serialize(Archive &archive, const unsigned int)
-      {
-        archive &vertex &cell &corner &factor &mean &faces &loads &given &corners;
-      }
-    };
-
-    /** What comes back of it. */
-    struct Return
-    {
-      unsigned int        cell = 0;
-      std::vector<double> outward;
-
-      template <class Archive>
-      void serialize(Archive &archive, const unsigned int)
-      {
-        archive &cell &outward;
-      }
-    };
-
     /** Of an owned cell. */
     struct Sums
     {
-      Eigen::VectorXd outward, loads, divergence; // in the end loads are the numbers of the flux
+      Eigen::VectorXd loads, divergence; // in the end loads are the numbers of the flux
       Oscillation     oscillation;
 
       std::shared_ptr<const CondensedCell> condensed; // of cells that are unlike others
     };
 
-    void add(const Cell &cell);
-    void add_faces(const Cell             &cell,
-                   const CellCorners<dim> &corners,
-                   const Eigen::VectorXd  &numbers,
-                   const double            conductivity,
-                   std::vector<FacePlace> &places,
-                   Eigen::MatrixXd        &given);
-    void deal_out(const CellCorners<dim>                   &corners,
-                  const typename FluxMesh<dim>::HatsInCell &hats,
-                  const Eigen::RowVectorXd                 &means,
-                  const Eigen::MatrixXd                    &loads,
-                  const Eigen::MatrixXd                    &given,
-                  PatchCell                                &piece);
-    void exchange_messages();
-    void take_found();
-    void finish();
+    VertexShares<dim> shares(const Cell &cell);
+    void              add_faces(const Cell             &cell,
+                                const CellCorners<dim> &corners,
+                                const Eigen::VectorXd  &numbers,
+                                const double            conductivity,
+                                std::vector<FacePlace> &places,
+                                Eigen::MatrixXd        &given);
+    void              finish(const VertexPatches<dim> &patches);
 
-    using Vertex = dealii::types::global_dof_index;
-
-    FluxMesh<dim>                                     &mesh;
-    const FluxProblem<dim>                            &problem;
-    const Vector                                      &u;
-    std::vector<Sums>                                  sums;     // by active cell index
-    std::unordered_map<Vertex, unsigned int>           expected; // cells of owned vertices
-    std::unordered_map<Vertex, std::vector<PatchCell>> patches;
-    std::map<unsigned int, std::vector<Message>>       messages;
-    std::map<unsigned int, std::vector<Return>>        returns;
-    std::vector<PatchCell>                             found; // of owned vertices
-    PatchSolver                                        solver;
-    double                                             left = 0.;
-    unsigned int                                       process;
+    FluxMesh<dim>          &mesh;
+    const FluxProblem<dim> &problem;
+    const Vector           &u;
+    std::vector<Sums>       sums; // by active cell index
+    double                  left = 0.;
   };
 } // namespace PeriDeal

@@ -80,5 +80,9 @@ namespace PeriDeal
 
     int             id = -1; // cells of one id are alike
     Eigen::MatrixXd stiffness, by_faces, by_divergence, by_loads, mixed;
+
+    // From the middle of the corners on, in units of the cell's size (rows: coordinates): Legendre
+    // coefficients of places, and factors of the fluxes o in moments.
+    Eigen::MatrixXd positions, moments;
   };
 } // namespace PeriDeal

@@ -252,6 +252,38 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Positions and moments of a cell of size 1. */
+    template <int dim>
+    void add_places(const UnitCell<dim>    &unit,
+                    const CellCorners<dim> &corners,
+                    CondensedCell          &condensed)
+    {
+      Point<dim> middle;
+      for (const Point<dim> &corner : corners)
+        middle += corner / double(corners.size());
+      const auto coordinates = [&](const MappedPoints<dim> &at) {
+        Eigen::MatrixXd x(at.points.size(), dim);
+        for (unsigned int q = 0; q < at.points.size(); ++q)
+          for (unsigned int d = 0; d < dim; ++d)
+            x(q, d) = at.points[q][d] - middle[d];
+        return x;
+      };
+      const auto of = [&](const UnitPoints<dim> &points) {
+        return Eigen::MatrixXd((points.products * points.weights.asDiagonal() *
+                                coordinates(MappedPoints<dim>(points, corners)))
+                                 .transpose());
+      };
+      condensed.positions = of(unit.inside);
+      condensed.moments.resize(dim, unit.basis.n_of_faces);
+      for (unsigned int f = 0; f < unit.on_faces.size(); ++f)
+        condensed.moments.middleCols(f * unit.basis.n_of_face, unit.basis.n_of_face) =
+          of(unit.on_faces[f]);
+    }
+  } // namespace
+
+
   template <int dim>
   std::pair<std::shared_ptr<const CondensedCell>, double> CondensedCells<dim>::of(
     const CellCorners<dim> &corners)
@@ -296,6 +328,7 @@ namespace PeriDeal
               }
         }
     auto condensed = std::make_shared<CondensedCell>(unit.basis, mass);
+    add_places(unit, unit_size, *condensed);
     if (known.size() < most)
       {
         condensed->id = known.size();
@@ -389,32 +422,39 @@ namespace PeriDeal
 
   template <int dim>
   HatLoads<dim>::HatLoads(const UnitCell<dim> &unit, const CellField<dim> &field)
+    : HatLoads(unit, field.at, field.source, field.gradient * field.conductivity.asDiagonal())
+  {}
+
+
+  template <int dim>
+  HatLoads<dim>::HatLoads(const UnitCell<dim>     &unit,
+                          const MappedPoints<dim> &at,
+                          const Eigen::VectorXd   &source,
+                          const Eigen::MatrixXd   &covariant)
     : divergence(unit.basis.n_divergence, GeometryInfo<dim>::vertices_per_cell)
     , loads(unit.basis.n, GeometryInfo<dim>::vertices_per_cell)
   {
-    const unsigned int n_points = field.values.size();
+    const unsigned int n_points = source.size();
     const auto        &inside   = unit.inside;
-    Eigen::MatrixXd    flux(dim, n_points); // kappa J F^{-1} F^{-T} grad u
+    Eigen::MatrixXd    flux(dim, n_points); // J F^{-1} F^{-T} of it
     for (unsigned int q = 0; q < n_points; ++q)
       {
-        const Eigen::Matrix<double, dim, dim> back = field.at.maps[q].inverse();
-        flux.col(q) = field.conductivity[q] * field.at.determinants[q] *
-                      (back * (back.transpose() * field.gradient.col(q)));
+        const Eigen::Matrix<double, dim, dim> back = at.maps[q].inverse();
+        flux.col(q) = at.determinants[q] * (back * (back.transpose() * covariant.col(q)));
       }
-    const Eigen::VectorXd source =
-      inside.weights.cwiseProduct(field.at.determinants).cwiseProduct(field.source);
-    Eigen::MatrixXd of_hats = source.asDiagonal() * inside.hats.transpose();
+    const Eigen::VectorXd weighted =
+      inside.weights.cwiseProduct(at.determinants).cwiseProduct(source);
+    Eigen::MatrixXd of_hats = weighted.asDiagonal() * inside.hats.transpose();
     for (unsigned int d = 0; d < dim; ++d)
       of_hats -= inside.weights.cwiseProduct(flux.row(d).transpose()).asDiagonal() *
                  inside.hat_gradients[d].transpose();
-    divergence                    = inside.products * of_hats;
-    const Eigen::VectorXd weights = inside.weights.cwiseProduct(field.conductivity);
+    divergence = inside.products * of_hats;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        const Eigen::MatrixXd weighted =
-          weights.cwiseProduct(field.gradient.row(d).transpose()).asDiagonal() *
+        const Eigen::MatrixXd of_row =
+          inside.weights.cwiseProduct(covariant.row(d).transpose()).asDiagonal() *
           inside.hats.transpose();
-        const Eigen::MatrixXd along = unit.along[d] * weighted;
+        const Eigen::MatrixXd along = unit.along[d] * of_row;
         for (unsigned int i = 0; i < along.rows(); ++i)
           loads.row(unit.numbers_along[d][i]) = -along.row(i);
       }

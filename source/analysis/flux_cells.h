@@ -167,6 +167,12 @@ namespace PeriDeal
     /** Columns: hats. */
     HatLoads(const UnitCell<dim> &unit, const CellField<dim> &field);
 
+    /** The same of any flux in place of kappa grad u; @param covariant F^T times it, at points */
+    HatLoads(const UnitCell<dim>     &unit,
+             const MappedPoints<dim> &at,
+             const Eigen::VectorXd   &source,
+             const Eigen::MatrixXd   &covariant);
+
     Eigen::MatrixXd divergence; // Legendre coefficients of J (hat f - grad hat . kappa grad u)
     Eigen::MatrixXd loads;      // minus the integral of hat kappa grad u . flux
   };

@@ -7,16 +7,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace PeriDeal
 {
   using namespace dealii;
 
   template <int dim>
-  ValueLifting<dim>::ValueLifting(const FluxMesh<dim> &mesh, const FluxProblem<dim> &problem)
+  ValueLifting<dim>::ValueLifting(const FluxMesh<dim> &mesh, GivenValue<dim> given)
     : mesh(mesh)
-    , problem(problem)
+    , value(std::move(given))
   {
+    if (!value)
+      return;
     const FiniteElement<dim> &fe    = mesh.dofs().get_fe();
     const auto               &nodes = mesh.unit.lifting_element.get_unit_support_points();
     shapes.resize(fe.n_dofs_per_cell(), nodes.size());
@@ -30,7 +33,7 @@ namespace PeriDeal
             {
               const MappedPoints<dim> at(mesh.unit.on_faces[f], corners_of<dim>(cell));
               const auto              side = cell->face(f)->boundary_id();
-              if (has_value(*problem.conditions, side, at))
+              if (has_value(value, side, at))
                 {
                   if constexpr (dim == 3)
                     for (unsigned int l = 0; l < 4; ++l)
@@ -39,7 +42,7 @@ namespace PeriDeal
               else
                 cut = cut || (cell->is_locally_owned() &&
                               std::any_of(at.points.begin(), at.points.end(), [&](const auto &p) {
-                                return problem.conditions->value_at(side, p) != nullptr;
+                                return value(side, p).has_value();
                               }));
             }
   }
@@ -55,7 +58,7 @@ namespace PeriDeal
         {
           const MappedPoints<dim> at(mesh.unit.on_faces[f], corners_of<dim>(cell));
           const auto              side = cell->face(f)->boundary_id();
-          if (has_value(*problem.conditions, side, at))
+          if (has_value(value, side, at))
             visit([f](const Point<dim> &p) { return p[f / 2] == double(f % 2); }, side);
         }
     if constexpr (dim == 3)
@@ -79,10 +82,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  Eigen::VectorXd ValueLifting<dim>::numbers(const Cell &cell, const Vector &u) const
+  Eigen::VectorXd ValueLifting<dim>::numbers(const Cell &cell, const Eigen::VectorXd &of_u) const
   {
     Eigen::VectorXd result, of_solution;
-    if (dim == 1 || (dim == 2 && !cell->at_boundary()) || problem.conditions->dirichlet.empty())
+    if (dim == 1 || (dim == 2 && !cell->at_boundary()) || !value)
       return result;
     const auto            &nodes   = mesh.unit.lifting_element.get_unit_support_points();
     const CellCorners<dim> corners = corners_of<dim>(cell);
@@ -92,7 +95,7 @@ namespace PeriDeal
       if (result.size() == 0)
         {
           result      = Eigen::VectorXd::Zero(nodes.size());
-          of_solution = shapes.transpose() * mesh.numbers(cell, u);
+          of_solution = shapes.transpose() * of_u;
         }
       for (unsigned int k = 0; k < nodes.size(); ++k)
         if (is_there(nodes[k]))
@@ -100,16 +103,15 @@ namespace PeriDeal
             Point<dim> p;
             for (unsigned int v = 0; v < corners.size(); ++v)
               p += GeometryInfo<dim>::d_linear_shape_function(nodes[k], v) * corners[v];
-            const auto *const condition = problem.conditions->value_at(side, p);
-            if (condition == nullptr)
+            const std::optional<double> there = value(side, p);
+            if (!there)
               continue;
-            const double value = condition->value.value(p, problem.time);
-            const double more  = value - of_solution[k];
+            const double more = *there - of_solution[k];
             // Where sides with values meet, the solution has one of them.
             if (!done[k] || std::abs(more) < std::abs(result[k]))
               result[k] = more;
             done[k] = 1;
-            largest = std::max(largest, std::abs(value));
+            largest = std::max(largest, std::abs(*there));
           }
     });
     if (result.size() > 0 && result.cwiseAbs().maxCoeff() <= 1e-13 * largest)

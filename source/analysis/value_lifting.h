@@ -19,11 +19,11 @@ namespace PeriDeal
   public:
     using Cell = typename FluxMesh<dim>::Cell;
 
-    /** The arguments must outlive this. Not collective. */
-    ValueLifting(const FluxMesh<dim> &mesh, const FluxProblem<dim> &problem);
+    /** @param value none: there is nothing. The mesh must outlive this. Not collective. */
+    ValueLifting(const FluxMesh<dim> &mesh, GivenValue<dim> value);
 
-    /** Of the elements in an owned cell; empty where there is nothing. u has ghosts. */
-    Eigen::VectorXd numbers(const Cell &cell, const Vector &u) const;
+    /** Of the elements in an owned cell, in which u has these; empty where there is nothing. */
+    Eigen::VectorXd numbers(const Cell &cell, const Eigen::VectorXd &of_u) const;
 
     /** At the points inside the cell, with respect to coordinates of the unit cell. */
     Eigen::MatrixXd gradient(const Eigen::VectorXd &numbers) const;
@@ -43,7 +43,7 @@ namespace PeriDeal
     void for_each_side(const Cell &cell, const Visit &visit) const;
 
     const FluxMesh<dim>                      &mesh;
-    const FluxProblem<dim>                   &problem;
+    const GivenValue<dim>                     value;
     Eigen::MatrixXd                           shapes; // of u_h at the support points
     std::map<int, dealii::types::boundary_id> lines;  // in 3D: those of sides with values
     bool                                      cut = false;

@@ -60,29 +60,23 @@ namespace PeriDeal
     }
 
 
-    /** Of each cell the number of its group, -1 where a face of the group is open. */
-    template <typename Part>
-    std::vector<int> closed_groups(const std::vector<PatchCell> &cells,
-                                   const std::vector<Part>      &parts)
+    /**
+     * What no fluxes can do: columns are such combinations of the balances whose rows these are.
+     */
+    Eigen::MatrixXd combinations_without_flux(const Eigen::MatrixXd &balances)
     {
-      std::vector<int>  group(cells.size());
-      std::vector<char> open(cells.size(), 0);
-      std::iota(group.begin(), group.end(), 0);
-      const auto join = [&](const int a, const int b) {
-        std::replace(group.begin(), group.end(), std::max(a, b), std::min(a, b));
-      };
-      for (const Part &a : parts)
-        for (const Part &b : parts)
-          if (a.unknown == b.unknown && group[a.cell] != group[b.cell])
-            join(group[a.cell], group[b.cell]);
-      for (const Part &part : parts)
-        if (cells[part.cell].faces[part.face].state == FacePlace::open)
-          open[group[part.cell]] = 1;
-      std::map<int, int> numbers;
-      std::vector<int>   result;
-      for (const int g : group)
-        result.push_back(open[g] ? -1 : numbers.try_emplace(g, numbers.size()).first->second);
-      return result;
+      constexpr double      negligible = 1e-12;
+      const Eigen::VectorXd norms      = balances.rowwise().norm();
+      const double          largest    = norms.size() > 0 ? norms.maxCoeff() : 0.;
+      Eigen::VectorXd       scales(norms.size());
+      for (unsigned int i = 0; i < norms.size(); ++i)
+        scales[i] = norms[i] > 1e-9 * largest ? 1. / norms[i] : 1.;
+      const Eigen::MatrixXd                                scaled = scales.asDiagonal() * balances;
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squares(scaled * scaled.transpose());
+      unsigned int                                         n = 0;
+      while (n < norms.size() && squares.eigenvalues()[n] < negligible)
+        ++n;
+      return scales.asDiagonal() * squares.eigenvectors().leftCols(n);
     }
 
 
@@ -95,13 +89,38 @@ namespace PeriDeal
   } // namespace
 
 
-  PatchSolver::PatchSolver(const unsigned int n_coordinates, const unsigned int k)
+  PatchSolver::PatchSolver(const unsigned int n_coordinates,
+                           const unsigned int k,
+                           const unsigned int n_components)
     : n_coordinates(n_coordinates)
     , k(k)
+    , n_components(n_components)
     , n_of_face(n_coordinates == 0 ? 1 :
                 n_coordinates == 1 ? k + 1 :
                                      (k + 1) * (k + 1))
+    , n_of_faces(2 * (n_coordinates + 1) * n_of_face)
+    , n_balances(n_components + n_components * (n_components - 1) / 2)
   {}
+
+
+  Eigen::MatrixXd PatchSolver::balances(const CondensedCell &cell,
+                                        const unsigned int   component,
+                                        const unsigned int   face,
+                                        const unsigned int   n_of_face,
+                                        const unsigned int   n_components)
+  {
+    Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(n_components + n_components * (n_components - 1) / 2, n_of_face);
+    result(component, 0) = 1.;
+    unsigned int row     = n_components;
+    for (unsigned int i = 0; i < n_components; ++i)
+      for (unsigned int j = i + 1; j < n_components; ++j, ++row)
+        if (component == i)
+          result.row(row) = cell.moments.row(j).segment(face * n_of_face, n_of_face);
+        else if (component == j)
+          result.row(row) = -cell.moments.row(i).segment(face * n_of_face, n_of_face);
+    return result;
+  }
 
 
   const Eigen::MatrixXd *PatchSolver::transformation(const std::array<int, 6> &place)
@@ -145,8 +164,9 @@ namespace PeriDeal
   std::vector<PatchSolver::Part> PatchSolver::parts_of(const std::vector<PatchCell> &cells,
                                                        unsigned int                 &n_unknown)
   {
-    std::vector<OneFace>                                        faces;
-    std::vector<std::array<dealii::types::global_dof_index, 4>> keys;
+    std::vector<OneFace>                                                                 faces;
+    std::vector<std::pair<unsigned int, std::array<dealii::types::global_dof_index, 4>>> keys;
+    const unsigned int n_faces = n_of_faces / n_of_face;
     for (unsigned int c = 0; c < cells.size(); ++c)
       for (unsigned int f = 0; f < cells[c].faces.size(); ++f)
         {
@@ -154,15 +174,16 @@ namespace PeriDeal
           if (face.state == FacePlace::given)
             continue;
           const bool  shared = face.state == FacePlace::shared;
+          const auto  key    = std::make_pair(f / n_faces, face.key);
           std::size_t one    = faces.size();
           if (shared)
-            one = std::find(keys.begin(), keys.end(), face.key) - keys.begin();
+            one = std::find(keys.begin(), keys.end(), key) - keys.begin();
           if (one == faces.size())
             {
               faces.emplace_back();
-              keys.push_back(face.key);
+              keys.push_back(key);
               if (!shared)
-                keys.back().fill(numbers::invalid_dof_index);
+                keys.back().second.fill(numbers::invalid_dof_index);
             }
           const double share = face.share(n_coordinates);
           // The larger one comes first.
@@ -198,42 +219,44 @@ namespace PeriDeal
   Eigen::MatrixXd PatchSolver::matrix(const std::vector<PatchCell> &cells,
                                       const std::vector<double>    &factors,
                                       const std::vector<Part>      &parts,
-                                      const unsigned int            n_unknown,
-                                      const std::vector<int>       &groups) const
+                                      const unsigned int            n_unknown) const
   {
     const unsigned int n_fluxes = n_unknown * n_of_face, n_cells = cells.size();
-    const unsigned int n = n_fluxes + n_cells + *std::max_element(groups.begin(), groups.end()) + 1;
-    Eigen::MatrixXd    matrix = Eigen::MatrixXd::Zero(n, n);
+    const unsigned int n_faces = n_of_faces / n_of_face;
+    Eigen::MatrixXd    energy  = Eigen::MatrixXd::Zero(n_fluxes, n_fluxes);
+    Eigen::MatrixXd    balance = Eigen::MatrixXd::Zero(n_cells * n_balances, n_fluxes);
     for (const Part &a : parts)
       {
+        const unsigned int   component = a.face / n_faces, face = a.face % n_faces;
+        const CondensedCell &of_cell = *cells[a.cell].condensed;
         for (const Part &b : parts)
-          if (a.cell == b.cell)
+          if (a.cell == b.cell && component == b.face / n_faces)
             {
               Eigen::MatrixXd block = (a.sign * b.sign * factors[a.cell]) *
-                                      cells[a.cell].condensed->stiffness.block(a.face * n_of_face,
-                                                                               b.face * n_of_face,
-                                                                               n_of_face,
-                                                                               n_of_face);
+                                      of_cell.stiffness.block(face * n_of_face,
+                                                              (b.face % n_faces) * n_of_face,
+                                                              n_of_face,
+                                                              n_of_face);
               if (a.transformation != nullptr)
                 block = a.transformation->transpose() * block;
               if (b.transformation != nullptr)
                 block = block * *b.transformation;
-              matrix.block(a.unknown * n_of_face, b.unknown * n_of_face, n_of_face, n_of_face) +=
+              energy.block(a.unknown * n_of_face, b.unknown * n_of_face, n_of_face, n_of_face) +=
                 block;
             }
-        Eigen::RowVectorXd mean = Eigen::RowVectorXd::Unit(n_of_face, 0);
+        Eigen::MatrixXd rows = a.sign * balances(of_cell, component, face, n_of_face, n_components);
         if (a.transformation != nullptr)
-          mean = a.transformation->row(0);
-        matrix.block(n_fluxes + a.cell, a.unknown * n_of_face, 1, n_of_face) += a.sign * mean;
-        matrix.block(a.unknown * n_of_face, n_fluxes + a.cell, n_of_face, 1) +=
-          a.sign * mean.transpose();
+          rows = rows * *a.transformation;
+        balance.block(a.cell * n_balances, a.unknown * n_of_face, n_balances, n_of_face) += rows;
       }
-    for (unsigned int c = 0; c < n_cells; ++c)
-      if (groups[c] >= 0)
-        {
-          matrix(n_fluxes + n_cells + groups[c], n_fluxes + c) = 1.;
-          matrix(n_fluxes + c, n_fluxes + n_cells + groups[c]) = 1.;
-        }
+    const Eigen::MatrixXd without = combinations_without_flux(balance);
+    const unsigned int    n       = n_fluxes + balance.rows();
+    Eigen::MatrixXd       matrix  = Eigen::MatrixXd::Zero(n + without.cols(), n + without.cols());
+    matrix.topLeftCorner(n_fluxes, n_fluxes)                  = energy;
+    matrix.block(n_fluxes, 0, balance.rows(), n_fluxes)       = balance;
+    matrix.block(0, n_fluxes, n_fluxes, balance.rows())       = balance.transpose();
+    matrix.block(n_fluxes, n, balance.rows(), without.cols()) = without;
+    matrix.block(n, n_fluxes, without.cols(), balance.rows()) = without.transpose();
     return matrix;
   }
 
@@ -242,8 +265,7 @@ namespace PeriDeal
     const std::vector<PatchCell> &cells,
     const std::vector<double>    &factors,
     const std::vector<Part>      &parts,
-    const unsigned int            n_unknown,
-    const std::vector<int>       &groups)
+    const unsigned int            n_unknown)
   {
     Key  key;
     bool keeps = n_kept < most_kept;
@@ -258,14 +280,13 @@ namespace PeriDeal
         std::int64_t code = part.sign > 0. ? 0 : 1;
         for (const int place : part.place)
           code = 8 * code + place + 3;
-        key.push_back(part.cell + 256 * (part.face + 8 * part.unknown));
+        key.push_back(part.cell + 256 * (part.face + 32 * part.unknown));
         key.push_back(code);
       }
-    key.insert(key.end(), groups.begin(), groups.end());
     const auto found = known.find(key);
     if (found != known.end())
       return found->second;
-    auto lu = std::make_shared<const LU>(matrix(cells, factors, parts, n_unknown, groups));
+    auto lu = std::make_shared<const LU>(matrix(cells, factors, parts, n_unknown));
     if (keeps)
       {
         n_kept += lu->matrixLU().size();
@@ -282,29 +303,33 @@ namespace PeriDeal
     });
     unsigned int            n_unknown = 0;
     const std::vector<Part> parts     = parts_of(cells, n_unknown);
-    const std::vector<int>  groups    = closed_groups(cells, parts);
     // Any factors give fluxes in balance; these serve many vertices.
     std::vector<double> factors;
     for (const PatchCell &cell : cells)
       factors.push_back(std::exp2(
         std::round(factor_steps * std::log2(cell.factor / cells[0].factor)) / factor_steps));
-    const auto                   lu       = factorization(cells, factors, parts, n_unknown, groups);
-    const unsigned int           n_fluxes = n_unknown * n_of_face;
-    Eigen::VectorXd              rhs      = Eigen::VectorXd::Zero(lu->rows());
+    const auto                   lu       = factorization(cells, factors, parts, n_unknown);
+    const unsigned int           n_fluxes = n_unknown * n_of_face, n_faces = n_of_faces / n_of_face;
+    Eigen::VectorXd              rhs = Eigen::VectorXd::Zero(lu->rows());
     std::vector<Eigen::VectorXd> fluxes(cells.size());
     for (unsigned int c = 0; c < cells.size(); ++c)
       {
-        fluxes[c]         = cells[c].given;
-        rhs[n_fluxes + c] = cells[c].mean;
+        fluxes[c]  = cells[c].given;
+        auto means = rhs.segment(n_fluxes + c * n_balances, n_balances);
+        means      = cells[c].means;
         for (unsigned int f = 0; f < cells[c].faces.size(); ++f)
-          rhs[n_fluxes + c] -= cells[c].given[f * n_of_face];
+          means -=
+            balances(*cells[c].condensed, f / n_faces, f % n_faces, n_of_face, n_components) *
+            cells[c].given.segment(f * n_of_face, n_of_face);
       }
     for (const Part &part : parts)
       {
-        const PatchCell &cell = cells[part.cell];
-        const auto rows = cell.condensed->stiffness.middleRows(part.face * n_of_face, n_of_face);
-        Eigen::VectorXd loads =
-          cell.loads.segment(part.face * n_of_face, n_of_face) - rows * cell.given;
+        const PatchCell   &cell      = cells[part.cell];
+        const unsigned int component = part.face / n_faces;
+        const auto         rows =
+          cell.condensed->stiffness.middleRows((part.face % n_faces) * n_of_face, n_of_face);
+        Eigen::VectorXd loads = cell.loads.segment(part.face * n_of_face, n_of_face) -
+                                rows * cell.given.segment(component * n_of_faces, n_of_faces);
         if (part.transformation != nullptr)
           loads = part.transformation->transpose() * loads;
         rhs.segment(part.unknown * n_of_face, n_of_face) += part.sign * factors[part.cell] * loads;

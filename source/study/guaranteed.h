@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <string>
+
 namespace PeriDeal
 {
   /**
@@ -16,4 +18,15 @@ namespace PeriDeal
    */
   template <int dim>
   nlohmann::ordered_json guaranteed_flow(const Scene<dim> &scene, Simulation<dim> &simulation);
+
+  /**
+   * "energy", of a static equilibrium by finite elements: the `bound` of the energy norm of the
+   * error, the same `relative` to that of the displacement, and a "reservation" if something is not
+   * bounded; null for others (ElasticBounds::why_not()). Collective.
+   */
+  template <int dim>
+  nlohmann::ordered_json guaranteed_energy(const Scene<dim> &scene, Simulation<dim> &simulation);
+
+  /** One of these, not null, in words. */
+  std::string guaranteed_text(const nlohmann::ordered_json &told, const std::string &side);
 } // namespace PeriDeal

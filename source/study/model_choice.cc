@@ -122,10 +122,7 @@ namespace PeriDeal
         say_constant();
         const Json more = {{"accuracy", describe()}};
         if (more["accuracy"].contains("guaranteed"))
-          progress.line(
-            "guaranteed: what enters through '" + scene.accuracy.side + "' lies between " +
-            number_text(more["accuracy"]["guaranteed"]["lower"].get<double>()) + " and " +
-            number_text(more["accuracy"]["guaranteed"]["upper"].get<double>()));
+          progress.line(guaranteed_text(more["accuracy"]["guaranteed"], scene.accuracy.side));
         if (chosen->last().simulation->has_kept())
           return chosen->last().simulation->write(std::move(files), more, progress);
         progress.line("computing it again, with results on the way");
@@ -383,9 +380,10 @@ namespace PeriDeal
                            (next.model == ModelKind::peridynamics ? nonlocal : classical).expected_time(next)}}}};
         if (is_nonlocal)
           all["horizon effect"] = horizon_effect;
-        if (const Json told = guaranteed_flow(*chosen->last().scene, *chosen->last().simulation);
-            !told.is_null())
-          all["guaranteed"] = told;
+        for (const auto &tell : {&guaranteed_flow<dim>, &guaranteed_energy<dim>})
+          if (const Json told = tell(*chosen->last().scene, *chosen->last().simulation);
+              !told.is_null())
+            all["guaranteed"] = told;
         for (const unsigned int d : constant)
           all["constant along"].push_back(std::string(1, "xyz"[d]));
         return all;
