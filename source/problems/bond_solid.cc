@@ -472,7 +472,8 @@ namespace PeriDeal
                                                 scene.horizon() / spacing,
                                                 completes_at_surfaces<dim>(scene)) :
                              "",
-              states->brittle() && !scene.material.softens() ? note_on_trapping(scene, family) : "",
+              states->brittle() && !scene.material.law.softens() ? note_on_trapping(scene, family) :
+                                                                   "",
               note_on_softening(),
               note_on_critical_stretch()})
           if (!note.empty())

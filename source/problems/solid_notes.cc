@@ -674,7 +674,7 @@ namespace PeriDeal
     std::ostringstream line;
     line.precision(4);
     line << "  " << run.name() << ": the first bond "
-         << (run.scene.material.softens() ? "began to soften" : "broke") << " at (";
+         << (run.scene.material.law.softens() ? "began to soften" : "broke") << " at (";
     for (unsigned int d = 0; d < dim; ++d)
       line << (d > 0 ? ", " : "") << places.first[d];
     line << ")" << (run.stepper ? ", by t = " : " at t = ") << t;

@@ -472,9 +472,9 @@ namespace PeriDeal
     options.direct_up_to   = scene.solver.direct_up_to;
     options.multigrid      = scene.elasticity.multigrid();
     // Where stretches are known; what softens waits for no motion.
-    options.breaks_in_motion = scene.elasticity.breaks_in_motion() && !scene.material.softens();
+    options.breaks_in_motion = scene.elasticity.breaks_in_motion() && !scene.material.law.softens();
     options.divides_steps    = // temperatures are those of their ends
-      !scene.warms_slowly() && !scene.material.softens();
+      !scene.warms_slowly() && !scene.material.law.softens();
     auto solver = make_static_solver(scene.elasticity.solver_name(), op(), options);
     loading     = std::make_unique<SlowLoading>(op(), std::move(solver), options);
     if (scene.guards.goes_on())

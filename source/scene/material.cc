@@ -174,27 +174,34 @@ namespace PeriDeal
   }
 
 
-  void Material::parse_softening() const
-  {
-    for (const std::string entry : {"Tensile strength", "Softening"})
-      refuse(is_given(entry) && !softens(),
-             entry,
-             "is for 'Law = softening'; 'Law' is '" + text("Law") + "'. Leave one of them out.");
-    if (!softens())
-      return;
-    refuse(!tensile_strength, "Tensile strength", "is empty, which 'Law = softening' needs.");
-    refuse(critical_stretch.has_value(),
-           "Critical stretch",
-           "is where brittle bonds break; 'Law = softening' takes 'Tensile strength' and "
-           "'Fracture energy'.");
-    refuse(!fracture_energy,
-           "Fracture energy",
-           "is empty, which 'Law = softening' needs: the area under the stress over the opening.");
-  }
-
-
   namespace
   {
+    /** Entries of bonds that soften, or entries that these have not. */
+    void refuse_softening(const Material &material)
+    {
+      const bool softens = material.law.softens();
+      for (const std::string entry : {"Tensile strength", "Softening"})
+        material.refuse(material.is_given(entry) && !softens,
+                        entry,
+                        "is for 'Law = softening'; 'Law' is '" + material.text("Law") +
+                          "'. Leave one of them out.");
+      if (!softens)
+        return;
+      material.refuse(!material.law.tensile_strength,
+                      "Tensile strength",
+                      "is empty, which 'Law = softening' needs.");
+      material.refuse(
+        material.critical_stretch.has_value(),
+        "Critical stretch",
+        "is where brittle bonds break; 'Law = softening' takes 'Tensile strength' and "
+        "'Fracture energy'.");
+      material.refuse(
+        !material.fracture_energy,
+        "Fracture energy",
+        "is empty, which 'Law = softening' needs: the area under the stress over the opening.");
+    }
+
+
     /** The entries of the law in the section, whose kind has been read. Throws UserError. */
     void parse_law(const SceneSection &section, Material::Law &law)
     {
@@ -278,17 +285,17 @@ namespace PeriDeal
         "Interface rule",
         "'harmonic' follows each bond through the phases and cannot have a 'Conductivity' with T; use 'arithmetic' or 'minimum'.");
 
-    thermal_expansion = property("Thermal expansion");
-    fracture_energy   = optional_property("Fracture energy", physics);
-    critical_stretch  = optional_property("Critical stretch", physics);
-    tensile_strength  = optional_property("Tensile strength", physics);
+    thermal_expansion    = property("Thermal expansion");
+    fracture_energy      = optional_property("Fracture energy", physics);
+    critical_stretch     = optional_property("Critical stretch", physics);
+    law.tensile_strength = optional_property("Tensile strength", physics);
     if (fracture_energy && critical_stretch)
       error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
     for (const std::string entry : {"Law", "Relaxation", "Softening", "Bond force"})
       refuse_unless_elastic(entry, physics);
     parse_law(*this, law);
-    parse_softening();
+    refuse_softening(*this);
     if (law.kind == SolidLaw::formula && fracture_energy)
       error(
         "Fracture energy",

@@ -382,10 +382,6 @@ namespace PeriDeal
       "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
     refuse_crack_direction(scene);
     scene.elasticity.refuse(
-      scene.elasticity.is_given("Breaking") && material.softens(),
-      "Breaking",
-      "is for bonds that break at once; with 'Law = softening' (section 'Material') they soften from equilibrium to equilibrium. Leave it out.");
-    scene.elasticity.refuse(
       scene.elasticity.contact_is_asked() && !bonds &&
         (none || !scene.coupling.exchanges() || scene.cracks.on_faces()),
       "Contact",
@@ -605,6 +601,33 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    template <int dim>
+    void refuse_softening_bonds(const BodyParameters<dim> &body, const bool by_elements)
+    {
+      if (!body.material.law.softens())
+        return;
+      body.material.refuse(
+        by_elements,
+        "Law",
+        "'softening' is one of bonds, and is for 'Models = peridynamics' alone.");
+      body.material.refuse(
+        !body.cracks.tips.empty(),
+        "Law",
+        "'softening' is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks'): bonds soften and break where they are stretched. Leave these out.");
+      body.elasticity.refuse(
+        body.elasticity.is_given("Breaking"),
+        "Breaking",
+        "is for bonds that break at once; with 'Law = softening' (section 'Material') they soften from equilibrium to equilibrium. Leave it out.");
+      body.elasticity.refuse(
+        body.elasticity.text("Crack direction") == "mean tension",
+        "Crack direction",
+        "'mean tension' is for bonds that break at once, not for 'Law = softening' (section 'Material'). Leave it out.");
+    }
+  } // namespace
+
+
   template <int dim>
   void refuse_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled)
   {
@@ -621,13 +644,7 @@ namespace PeriDeal
       kind == SolidLaw::formula && by_elements && !coupled,
       "Law",
       "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
-    material.refuse(kind == SolidLaw::softening && by_elements,
-                    "Law",
-                    "'softening' is one of bonds, and is for 'Models = peridynamics' alone.");
-    material.refuse(
-      kind == SolidLaw::softening && !body.cracks.tips.empty(),
-      "Law",
-      "'softening' is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks'): bonds soften and break where they are stretched. Leave these out.");
+    refuse_softening_bonds(body, by_elements);
     const bool is_warm = body.elasticity.computes_temperature ||
                          !is_zero(body.elasticity.temperature_change);
     material.refuse(by_elements && is_warm,

@@ -31,7 +31,7 @@
 #include "run_output.h"
 #include "summary_parts.h"
 
-// What changes in a run: the mesh, how far it is; keeping that, or looking before it is written.
+// The mesh, how far a run is; keeping that, or looking before it is written.
 
 namespace PeriDeal
 {
@@ -811,7 +811,6 @@ namespace PeriDeal
     record->totals.clear(); // rows are added when they are written
     return summary_now(true);
   }
-
 
   template <int dim>
   void Simulation<dim>::write(std::unique_ptr<RunFiles>     files,

@@ -49,12 +49,13 @@ namespace PeriDeal
       family_for(body, limit, cracked && !body.given && (on_faces(1.) || lines_for_cracks()));
     if (!is_given() && family != Family::bonds)
       planes = material_planes(scene);
-    rough_order = order_of_rough_places(scene, box, planes);
+    const double rough = order_of_rough_places(scene, box, planes);
     for (unsigned int d = 0; planes && d < dim; ++d)
       if (!planes_on_lines(d, with_points_on_planes(d, 2)))
         planes.reset();
     if (family != Family::bonds)
       needs = needs_of_formulas(body, planes.has_value());
+    needs.rough_order = rough;
     if (family == Family::whole)
       first = first_counts();
     if (is_given())
@@ -465,7 +466,7 @@ namespace PeriDeal
   template <int dim>
   double Attempts<dim>::best_order() const
   {
-    return std::min(rough_order, order_of_elements());
+    return std::min(needs.rough_order, order_of_elements());
   }
 
 

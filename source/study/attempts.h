@@ -148,7 +148,6 @@ namespace PeriDeal
     double                   longest = 0.;
     NeedsOfFormulas          needs;
     std::optional<std::vector<std::vector<double>>> planes; // of materials, to be on lines
-    double                                          rough_order = 0.; // order_of_rough_places()
     std::optional<CellLines>                        lines; // of the coarsest mesh, not a lattice
     Family                                          family = Family::whole;
     std::vector<double> first; // cells of the first mesh, of a family other than `bonds`

@@ -17,6 +17,8 @@ namespace PeriDeal
     double fineness = 1.;    // cells along the longest edge
     bool   jumps    = false; // within cells: errors get smaller only as cells do, unevenly
     bool   disagree = false; // given_values_disagree(): the same, but at corners
+
+    double rough_order = 0.; // order_of_rough_places()
   };
 
 

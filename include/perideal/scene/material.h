@@ -36,7 +36,6 @@ namespace PeriDeal
     MaterialProperty                thermal_expansion; // strain per temperature
     std::optional<MaterialProperty> fracture_energy;   // per area; not both
     std::optional<MaterialProperty> critical_stretch;
-    std::optional<MaterialProperty> tensile_strength; // of bonds that soften
 
     /** Of the critical stretch from node to node. */
     struct Scatter
@@ -49,22 +48,23 @@ namespace PeriDeal
     /** How the force of a bond follows from its extension (BondLaw). */
     struct Law
     {
-      SolidLaw                kind;
-      std::vector<Relaxation> relaxation; // viscoelastic
-      Expression              bond_force; // formula: of the stretch s and the damage
-      Softening               softening;  // softening, with Material::tensile_strength
+      SolidLaw                        kind;
+      std::vector<Relaxation>         relaxation; // viscoelastic
+      Expression                      bond_force; // formula: of the stretch s and the damage
+      Softening                       softening;
+      std::optional<MaterialProperty> tensile_strength;
+
+      /** Bonds lose their force little by little. */
+      bool softens() const
+      {
+        return kind == SolidLaw::softening;
+      }
     } law;
 
     /** Bonds may break. */
     bool breaks() const
     {
       return fracture_energy || critical_stretch;
-    }
-
-    /** They lose their force little by little. */
-    bool softens() const
-    {
-      return law.kind == SolidLaw::softening;
     }
 
     bool uniform_conductivity() const
@@ -127,7 +127,6 @@ namespace PeriDeal
                                                       const Physics      physics) const;
 
     void parse_scatter();
-    void parse_softening() const;
 
     void parse_moduli(const unsigned int dim, const PlaneState plane);
 

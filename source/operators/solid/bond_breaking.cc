@@ -5,6 +5,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/bond_breaking.h>
+#include <perideal/operators/solid/bond_softness.h>
 
 #include <algorithm>
 #include <cmath>
@@ -113,7 +114,7 @@ namespace PeriDeal
   void BondBreaking<dim>::judge_softening(Overstretched bond)
   {
     constexpr double slack = 1e-3; // of limits
-    const auto       state = bonds.rows.softness(bond.number);
+    const auto       state = softness_of(bonds.rows, bond.number);
     const double     most  = std::max(1., state.reached);
     const bool       grows = bond.ratio > (1. + slack) * most,
                is_pressed  = bond.ratio<-slack, has_softened = state.reached> 1.;
@@ -135,16 +136,6 @@ namespace PeriDeal
                                 bonds.ends.origin(j),
                                 bonds.ends.vector(bond.node, j).norm(),
                                 ratio);
-  }
-
-
-  template <int dim>
-  void BondBreaking<dim>::change(const Overstretched &bond, const double t)
-  {
-    if (bond.integrity > 0.)
-      bonds.rows.weaken(bond.number, {bond.ratio, 1. - bond.integrity});
-    else
-      bonds.rows.mark(bond.number, BondState::broken, t);
   }
 
 
@@ -233,7 +224,7 @@ namespace PeriDeal
           return;
         const BondMeasure found = measure(u.begin(), i, bond);
         const double      before =
-          criterion->softens() ? std::max(1., bonds.rows.softness(bond.number).reached) : 1.;
+          criterion->softens() ? std::max(1., softness_of(bonds.rows, bond.number).reached) : 1.;
         if (found.exceeds(most * before))
           most = found.over_limit() / before;
       });
@@ -251,8 +242,8 @@ namespace PeriDeal
   {
     std::vector<std::pair<unsigned int, double>> lost;
     bonds.rows.for_each_in_body(node, [&](const auto &bond) {
-      const double part = bonds.rows.is_whole(bond.number) ? bonds.rows.softness(bond.number).lost :
-                                                             0.;
+      const double part =
+        bonds.rows.is_whole(bond.number) ? softness_of(bonds.rows, bond.number).lost : 0.;
       if (part > 0.)
         lost.emplace_back(bond.neighbor, part);
     });
@@ -265,8 +256,8 @@ namespace PeriDeal
           if (neighbor == term.node)
             most = std::max(most, part);
       });
-      if (most != bonds.rows.softness(bond.number).lost)
-        bonds.rows.weaken(bond.number, {0., most});
+      if (most != softness_of(bonds.rows, bond.number).lost)
+        weaken(bonds.rows, bond.number, {0., most});
     });
   }
 
@@ -335,7 +326,10 @@ namespace PeriDeal
       {
         n_ends += bond.n_ends;
         n_gone += bond.integrity > 0. ? 0 : bond.n_ends;
-        this->change(bond, t);
+        if (bond.integrity > 0.)
+          weaken(bonds.rows, bond.number, {bond.ratio, 1. - bond.integrity});
+        else
+          bonds.rows.mark(bond.number, BondState::broken, t);
       }
     for (const unsigned int i : losing)
       {
@@ -380,7 +374,7 @@ namespace PeriDeal
       this->exchange_history(archive);
     const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
     if (criterion && criterion->softens())
-      exchange_histories(bonds.rows, archive, keys, BondTable<dim>::n_softness);
+      exchange_histories(bonds.rows, archive, keys, BondSoftness::n);
     if (!archive.loads())
       return;
     const auto take = [&](const bool first) {
@@ -406,7 +400,7 @@ namespace PeriDeal
   {
     for (BondRows<dim> *rows : {&bonds.rows.body, &bonds.rows.beyond})
       for (std::size_t k = 0; k < rows->size(); ++k)
-        if (const double lost = rows->nonlinear.history[BondTable<dim>::n_softness * k + 1];
+        if (const double lost = rows->nonlinear.history[BondSoftness::n * k + 1];
             lost > 0. && rows->state.is_whole(k))
           rows->weaken(k, 1. - lost);
   }
@@ -426,7 +420,7 @@ namespace PeriDeal
   {
     if (!criterion || !criterion->softens())
       return 1.;
-    const double reached = bonds.rows.softness(number).reached;
+    const double reached = softness_of(bonds.rows, number).reached;
     return reached > 1. ? integrity({number, node, node, 0, reached}, reached) : 1.;
   }
 

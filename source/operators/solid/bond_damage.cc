@@ -24,7 +24,7 @@ namespace PeriDeal
     std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds,
                                                        const BodyParameters<dim> &body)
     {
-      if (bonds.material.softens())
+      if (bonds.material.law.softens())
         return std::make_unique<SofteningStrengths<dim>>(bonds);
       if (bonds.material.breaks() && body.elasticity.text("Crack direction") == "mean tension")
         return std::make_unique<MeanTensionCriterion<dim>>(bonds, body.cracks.cracks);

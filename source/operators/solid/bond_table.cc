@@ -8,7 +8,7 @@
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/lattice/bond_form.h>
-#include <perideal/operators/solid/bond_table.h>
+#include <perideal/operators/solid/bond_softness.h>
 #include <perideal/operators/solid/law_steps.h>
 
 #include <algorithm>
@@ -261,15 +261,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  void BondTable<dim>::weaken(const std::size_t number, const Softness &now)
+  void weaken(BondTable<dim> &bonds, const std::size_t number, const BondSoftness &now)
   {
-    BondRows<dim>    &rows   = (number & of_beyond) != 0 ? beyond : body;
-    const std::size_t k      = place(number);
-    const double      before = softness(number).lost;
+    BondRows<dim>    &rows = (number & BondTable<dim>::of_beyond) != 0 ? bonds.beyond : bonds.body;
+    const std::size_t k    = bonds.place(number);
+    const double      before = softness_of(bonds, number).lost;
     if (now.lost != before)
       rows.weaken(k, (1. - now.lost) / (1. - before));
-    rows.nonlinear.history[n_softness * k]     = now.reached;
-    rows.nonlinear.history[n_softness * k + 1] = now.lost;
+    rows.nonlinear.history[BondSoftness::n * k]     = now.reached;
+    rows.nonlinear.history[BondSoftness::n * k + 1] = now.lost;
   }
 
 
@@ -388,5 +388,6 @@ namespace PeriDeal
 
 
   PERIDEAL_INSTANTIATE_CLASS(class BondTable);
+  PERIDEAL_INSTANTIATE_FUNCTION(weaken);
   PERIDEAL_INSTANTIATE_FUNCTION(exchange_histories);
 } // namespace PeriDeal

@@ -43,7 +43,7 @@ namespace PeriDeal
   NodeLaws<dim>::NodeLaws(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : weighted(nodes.partitioner())
     , volumetric(!body.elasticity.is_bond_based() && dim > 1)
-    , counts_cut(body.material.softens())
+    , counts_cut(body.material.law.softens())
     , nodes(nodes)
     , horizon(body.horizon())
   {

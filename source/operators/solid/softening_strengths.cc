@@ -89,7 +89,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < places.n_owned(); ++i)
       {
         const Point<dim> &p        = places.position(i);
-        const double      strength = value(*material.tensile_strength, "Tensile strength", p) *
+        const double      strength = value(*material.law.tensile_strength, "Tensile strength", p) *
                                 (field ? field->factor(p) : 1.),
                      energy = value(*material.fracture_energy, "Fracture energy", p);
         if (message.empty())

@@ -4,6 +4,7 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
+#include <perideal/operators/solid/bond_softness.h>
 #include <perideal/operators/solid/fictitious_cuts.h>
 #include <perideal/operators/solid/solid_bonds.h>
 #include <perideal/operators/solid/surface_factors.h>
@@ -60,7 +61,7 @@ namespace PeriDeal
       return;
     rows.go_on_beyond(search().on_lattice(sides, completes),
                       !body.elasticity.has_full_kinematics() && !law.any() &&
-                        !body.material.softens() &&
+                        !body.material.law.softens() &&
                         !families.cracks().history().changes_ever());
     // The lattice knows what is complete to the last bit.
     const double complete = rows.complete_weighted;
@@ -106,7 +107,6 @@ namespace PeriDeal
     , sums(families, ends, rows, laws)
     , kinematics(families, ends, rows, thermal, body.elasticity.has_full_kinematics())
     , forces(families, ends, rows, laws, law, kinematics)
-    , soften(body.material.softens())
     , weights_follow(body.elasticity.micromodulus != Micromodulus::constant)
   {
     complete_families(body);
@@ -116,7 +116,7 @@ namespace PeriDeal
     if (body.peridynamics.corrects_elastic_bonds())
       correct_surface(body);
     rows.find_springs(body.elasticity.has_full_kinematics(),
-                      soften ? BondTable<dim>::n_softness : law.n_history());
+                      body.material.law.softens() ? BondSoftness::n : law.n_history());
     sums.take_lattice();
   }
 

@@ -5,6 +5,7 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/instantiate.h>
+#include <perideal/operators/solid/bond_softness.h>
 #include <perideal/operators/solid/solid_matrices.h>
 
 #include <algorithm>
@@ -73,9 +74,9 @@ namespace PeriDeal
                 return;
               }
             found.near.push_back(bond.neighbor);
-            if (!bonds.soften)
+            if (!bonds.laws.counts_cut) // and do not soften
               return;
-            const double lost = bonds.rows.softness(bond.number).lost;
+            const double lost = softness_of(bonds.rows, bond.number).lost;
             found.left.push_back(1. - lost);
             found.damaged[i] = found.damaged[i] || lost > 0.5;
           };

@@ -127,7 +127,6 @@ namespace PeriDeal
     void        judge(const double *u, const unsigned int i, const SolidBond<dim> &bond);
     void        judge_softening(Overstretched bond);
     double      integrity(const Overstretched &bond, const double ratio) const;
-    void        change(const Overstretched &bond, const double t);
     double      left_of(const unsigned int node, const std::size_t number) const;
     void        take_softness();
     void        soften_dependent(const unsigned int node);

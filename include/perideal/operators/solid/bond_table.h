@@ -129,25 +129,6 @@ namespace PeriDeal
     /** A bond that was whole bears nothing any more. @param t since when */
     void mark(const std::size_t number, const BondState::Mark mark, const double t);
 
-    /** What a bond that softens has been through and bears, of both of its ends alike. */
-    struct Softness
-    {
-      double reached; // largest measure over limit, or less than 1
-      double lost;    // of what it bore without damage: 1 - DamageCriterion::integrity()
-    };
-
-    Softness softness(const std::size_t number) const
-    {
-      const double *const numbers =
-        rows_of(number).nonlinear.history.data() + n_softness * place(number);
-      return {numbers[0], numbers[1]};
-    }
-
-    /** Of a whole bond, of which something is left. */
-    void weaken(const std::size_t number, const Softness &now);
-
-    static constexpr unsigned int n_softness = 2; // numbers
-
     /** Also of bonds that are not stored. */
     bool is_whole(const std::size_t number) const
     {

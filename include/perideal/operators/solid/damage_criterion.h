@@ -57,8 +57,8 @@ namespace PeriDeal
 
 
   /**
-   * When a bond of a solid breaks for good, or begins to soften: its measure is above its limit. The
-   * same for peridynamics alone (BondBreaking) and for zones beside elements (ZoneBreaking), in
+   * When a bond of a solid breaks for good, or begins to soften: its measure is above its limit.
+   * The same for peridynamics alone (BondBreaking) and for zones beside elements (ZoneBreaking), in
    * which bonds break at once. Not collective.
    */
   template <int dim>

@@ -43,7 +43,6 @@ namespace PeriDeal
     SolidSums<dim>      sums;
     BondKinematics<dim> kinematics;
     BondForces<dim>     forces;
-    const bool          soften; // BondTable::softness() is that of bonds
     // Of a mesh: least thickness of the body behind free sides, where it is thin (thin_on_mesh()).
     double thinnest = std::numeric_limits<double>::infinity();
 
