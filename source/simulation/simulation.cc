@@ -417,7 +417,7 @@ namespace PeriDeal
               adapt(to);
           }
         ++place.stop;
-        if (!tells_at_stops())
+        if (!tells_at_stops() || !output->is_open()) // solve() writes nothing
           continue;
         {
           Timings::Scope scope(timings, "output");

@@ -99,7 +99,7 @@ def loads():
         check_close(row["ux"], row["time"] ** 2, relative=2e-2, what=f"a displacement at t = {row['time']}")
     check(len({row["time"] for row in run.totals if row["model"] == "auto"}) == 4, "a body loaded slowly: totals at the start and at all times of the output")
     crack = insulated_crack("crack off all coarse lattices", 0, half_length=0.4637, centre=(0.0713, 0.1931))
-    check_cases([crack], (1e-2, 1e-3), "A crack along an axis")
+    check_cases([crack], (1e-2, 1e-3), "A crack along an axis", 0.)  # 11 times: the first mesh is much worse than the second
     run = run_scene(crack.text(), {"Output/Fields": "none"})
     check("Domain/Cell lines" in run.summary["accuracy"]["settings"], "cells of unequal size")
     check_less(run.summary["cells"], 1500, "cells")
