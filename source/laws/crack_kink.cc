@@ -31,8 +31,9 @@ namespace PeriDeal
 
   CrackKink kink_at(const double angle, const double mode_1, const double mode_2)
   {
-    const double p2 = dealii::numbers::PI * dealii::numbers::PI, p3 = p2 * dealii::numbers::PI, p4 = p2 * p2, p5 = p4 * dealii::numbers::PI, p6 = p4 * p2;
-    const double m                          = angle / dealii::numbers::PI;
+    const double p2 = dealii::numbers::PI * dealii::numbers::PI, p3 = p2 * dealii::numbers::PI,
+                 p4 = p2 * p2, p5 = p4 * dealii::numbers::PI, p6 = p4 * p2;
+    const double                 m          = angle / dealii::numbers::PI;
     const std::array<double, 11> one_of_one = {{1.,
                                                 -3. * p2 / 8.,
                                                 p2 - 5. * p4 / 128.,
@@ -44,26 +45,28 @@ namespace PeriDeal
                                                 -4.059,
                                                 1.63,
                                                 4.1}};
-    const std::array<double, 10> one_of_two = {{-3. * dealii::numbers::PI / 2.,
-                                                10. * dealii::numbers::PI / 3. + p3 / 16.,
-                                                -2. * dealii::numbers::PI - 133. * p3 / 180. + 59. * p5 / 1280.,
-                                                12.313906,
-                                                -7.32433,
-                                                1.5793,
-                                                4.0216,
-                                                -6.915,
-                                                4.21,
-                                                4.56}};
-    const std::array<double, 10> two_of_one = {{dealii::numbers::PI / 2.,
-                                                -4. * dealii::numbers::PI / 3. - p3 / 48.,
-                                                -2. * dealii::numbers::PI / 3. + 13. * p3 / 30. - 59. * p5 / 3840.,
-                                                -6.176023,
-                                                4.44112,
-                                                -1.5340,
-                                                -2.0700,
-                                                4.684,
-                                                -3.95,
-                                                -1.32}};
+    const std::array<double, 10> one_of_two = {
+      {-3. * dealii::numbers::PI / 2.,
+       10. * dealii::numbers::PI / 3. + p3 / 16.,
+       -2. * dealii::numbers::PI - 133. * p3 / 180. + 59. * p5 / 1280.,
+       12.313906,
+       -7.32433,
+       1.5793,
+       4.0216,
+       -6.915,
+       4.21,
+       4.56}};
+    const std::array<double, 10> two_of_one = {
+      {dealii::numbers::PI / 2.,
+       -4. * dealii::numbers::PI / 3. - p3 / 48.,
+       -2. * dealii::numbers::PI / 3. + 13. * p3 / 30. - 59. * p5 / 3840.,
+       -6.176023,
+       4.44112,
+       -1.5340,
+       -2.0700,
+       4.684,
+       -3.95,
+       -1.32}};
     const std::array<double, 11> two_of_two = {
       {1.,
        -4. - 3. * p2 / 8.,

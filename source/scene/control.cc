@@ -2,8 +2,8 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/instantiate.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/control.h>
+#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>

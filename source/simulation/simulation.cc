@@ -32,7 +32,6 @@
 #include "summary_parts.h"
 
 // The mesh, how far a run is; keeping that, or looking before it is written.
-
 namespace PeriDeal
 {
   using namespace dealii;

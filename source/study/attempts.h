@@ -148,7 +148,7 @@ namespace PeriDeal
     double                   longest = 0.;
     NeedsOfFormulas          needs;
     std::optional<std::vector<std::vector<double>>> planes; // of materials, to be on lines
-    std::optional<CellLines>                        lines; // of the coarsest mesh, not a lattice
+    std::optional<CellLines>                        lines;  // of the coarsest mesh, not a lattice
     Family                                          family = Family::whole;
     std::vector<double> first; // cells of the first mesh, of a family other than `bonds`
     double              first_fineness = 0.; // of the coarsest mesh; 0 until it is known

@@ -417,12 +417,12 @@ namespace PeriDeal
         print_seconds(graded(), square(64) + of_degree(2), "Q2");
         print_seconds(distorted(48), of_degree(2), "Q2");
       }
-    const Settings bent = material("2", "0", "stress") +
-                          Settings{{"Material/Phases/Regions", "stiff: x > 0.5"},
-                                   {"Material/Phases/Young modulus", "stiff: 8"},
-                                   {"Boundary conditions/Symmetry", "bottom"},
-                                   {"Boundary conditions/Displacement", "left: 0, free"},
-                                   {"Boundary conditions/Traction", "right: 1, 0"}};
+    const Settings bent =
+      material("2", "0", "stress") + Settings{{"Material/Phases/Regions", "stiff: x > 0.5"},
+                                              {"Material/Phases/Young modulus", "stiff: 8"},
+                                              {"Boundary conditions/Symmetry", "bottom"},
+                                              {"Boundary conditions/Displacement", "left: 0, free"},
+                                              {"Boundary conditions/Traction", "right: 1, 0"}};
     const BoundedSolid pulled(bent + square(6) + of_degree(2));
     const EnergyBound  bound = pulled.bounds.of(pulled.u);
     EXPECT_LT(bound.bound, 1e-8);

@@ -7,8 +7,8 @@
 #include <perideal/base/point_order.h>
 #include <perideal/operators/solid/bond_damage.h>
 #include <perideal/operators/solid/bond_strengths.h>
-#include <perideal/operators/solid/softening_strengths.h>
 #include <perideal/operators/solid/mean_tension_criterion.h>
+#include <perideal/operators/solid/softening_strengths.h>
 
 #include <algorithm>
 #include <utility>
@@ -36,8 +36,8 @@ namespace PeriDeal
 
 
   template <int dim>
-  BondDamage<dim>::BondDamage(const Families<dim>                  &families,
-                              const BodyParameters<dim>            &body,
+  BondDamage<dim>::BondDamage(const Families<dim>                          &families,
+                              const BodyParameters<dim>                    &body,
                               std::function<CrossingEnergy(unsigned int)> &&crossing_energy)
     : families(families)
     , body(body)

@@ -102,7 +102,7 @@ namespace PeriDeal
         const Point<dim> &p     = places.position(i);
         const double      value = strength.value(p);
         double           &s     = stretches.local_element(i);
-        s                       = of_energy ? std::sqrt(value / bonds.crossing_energy(i).total()) : value;
+        s = of_energy ? std::sqrt(value / bonds.crossing_energy(i).total()) : value;
         if (message.empty() && !(s > 0.))
           message = fault_at(of_energy, p);
       }
