@@ -43,7 +43,7 @@ namespace PeriDeal
     /** The direction at the end of a crack at an angle to a lattice whose horizon is 4. */
     Tensor<1, 2> direction(const double angle, const Point<2> &tip, const double mode_2)
     {
-      constexpr int      m   = 4;
+      constexpr int      m = 4, reach = 2 * m + 2;
       const Tensor<1, 2> way = at(angle), normal = at(angle + 90. * degree);
       CrackPaths<2>      paths({{tip - 100. * way, tip}}, m);
       paths.begin();
@@ -52,8 +52,8 @@ namespace PeriDeal
           near_tip(Tensor<1, 2>({(x - tip) * way, (x - tip) * normal}), mode_2);
         return v[0] * way + v[1] * normal;
       };
-      for (int i = -4 * m; i <= 4 * m; ++i)
-        for (int j = -4 * m; j <= 4 * m; ++j)
+      for (int i = -reach; i <= reach; ++i)
+        for (int j = -reach; j <= reach; ++j)
           for (int k = -m; k <= m; ++k)
             for (int l = -m; l <= m; ++l)
               {
