@@ -218,7 +218,9 @@ namespace PeriDeal
                const bool       quiet)
         : GrowthSearch<2>(scene, text, communicator, quiet)
         , tracer(scene, text, communicator, measure)
-        , cracks(cracked_box(scene))
+        , cracks(cracked_box(
+            *scene_variant(scene,
+                           {{"Cracks/Mesh", "removed"}, {"Cracks/Nodes on cracks", "left"}})))
       {}
 
     private:

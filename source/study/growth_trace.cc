@@ -122,6 +122,8 @@ namespace PeriDeal
                                                   const double         end_time) const
   {
     return {{"Cracks/Segments", cracks.segments()},
+            {"Cracks/Mesh", "removed"}, // else cracks near faces of `Cells` would be laid on them
+            {"Cracks/Nodes on cracks", "left"},
             {"Material/Fracture energy", ""},
             {"Elasticity/Breaking", "auto"},
             {"Elasticity/Contact", "auto"},
@@ -237,9 +239,15 @@ namespace PeriDeal
             cracks.let_through(end); // so near to a side that there is no room for a ring
         const double load = now.state.load();
         if (load > 1. && !trace.states.empty() && trace.states.back().state.load() < 1.)
-          {
+          { // it comes to rest between both
             const TracedState &last = trace.states.back();
-            const double       share =
+            trace.ends_early        = !control.to_end && last.state.force <= best;
+            if (trace.ends_early)
+              {
+                trace.states.push_back(std::move(now));
+                break;
+              }
+            const double share =
               (1. - last.state.load()) / (std::min(load, 2.) - last.state.load());
             cracks = last.cracks;
             grow_first(cracks, last.state, share * control.step);
