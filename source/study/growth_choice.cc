@@ -274,7 +274,7 @@ namespace PeriDeal
         const double       steps = trace.between_states();
         tell_trace(trace);
         const std::vector<Setting> common  = tracer.settings(most.cracks, scene.time.end_time);
-        const auto                 variant = scene_variant(scene, common);
+        const auto                 variant = tracer.body_with(most.cracks, scene.time.end_time);
         const BodyOfChoice<2>      body(*variant, communicator);
         Search<2> family(body, text, communicator, measure, LimitOfAttempts::classical);
         family.set(common);
@@ -406,7 +406,7 @@ namespace PeriDeal
             setting.second = full_precision(end);
         chosen.model                  = last.attempt.model;
         chosen.estimate               = error + steps;
-        chosen.met                    = family.is_within(tolerance - steps);
+        chosen.met                    = limit.empty() && chosen.estimate <= tolerance;
         chosen.reason                 = family.attempts().reason();
         const bool bonds              = chosen.model == ModelKind::coupled;
         chosen.left                   = {{"mesh", bonds ? 0. : error},

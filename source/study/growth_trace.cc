@@ -122,8 +122,6 @@ namespace PeriDeal
                                                   const double         end_time) const
   {
     return {{"Cracks/Segments", cracks.segments()},
-            {"Cracks/Mesh", "removed"}, // else cracks near faces of `Cells` would be laid on them
-            {"Cracks/Nodes on cracks", "left"},
             {"Material/Fracture energy", ""},
             {"Elasticity/Breaking", "auto"},
             {"Elasticity/Contact", "auto"},
@@ -133,6 +131,18 @@ namespace PeriDeal
             {"Time/Time step", full_precision(end_time)},
             {"Output/Write at", ""},
             {"Output/Write every", ""}};
+  }
+
+
+  template <int dim>
+  std::shared_ptr<Scene<dim>> CrackTracer<dim>::body_with(const GrowingCracks &cracks,
+                                                          const double         end_time) const
+  {
+    std::vector<Setting> all = settings(cracks, end_time);
+    // Else cracks near faces of `Cells` would be laid on them.
+    all.emplace_back("Cracks/Mesh", "removed");
+    all.emplace_back("Cracks/Nodes on cracks", "left");
+    return scene_variant(scene, all);
   }
 
 
@@ -161,7 +171,7 @@ namespace PeriDeal
   {
     constexpr unsigned int  n_tries = 3;
     constexpr double        finer   = 1.5;
-    const auto              variant = scene_variant(scene, settings(cracks, time));
+    const auto              variant = body_with(cracks, time);
     const BodyOfChoice<dim> body(*variant, communicator);
     const Search<dim>       search(body, text, communicator, measure, LimitOfAttempts::classical);
     TracedState             one{cracks, {}, {}};
@@ -200,6 +210,10 @@ namespace PeriDeal
              end.name +
                " is pressed together by the loads (K_I < 0), where faces that touch matter. "
                "Give 'Horizon' in section 'Peridynamics' as a length.");
+    for (const GrowingCracks::End &end : state.cracks.ends())
+      refuse(!is_seen(state.state, state.cracks.name(end)),
+             "there is no room around " + state.cracks.name(end) +
+               " for a ring of some cells, by which its stress intensities are found.");
     const GriffithState half  = state_of(state.cracks, 0.5 * scene.time.end_time, 1.).state;
     double              apart = std::abs(2. * half.force / state.state.force - 1.);
     for (std::size_t k = 0; k < half.ends.size() && k < state.state.ends.size(); ++k)
@@ -264,8 +278,10 @@ namespace PeriDeal
         trace.ends_early =
           !control.to_end && reached < 1. &&
           ((trace.states.size() > 2 && last.state.force <= best) || load < fallen * reached);
+        if (reached >= 1. || trace.ends_early || cracks.ends().empty())
+          break;
         trace.is_stopped = control.may_go_on && !control.may_go_on(seconds() - before);
-        if (reached >= 1. || trace.ends_early || cracks.ends().empty() || trace.is_stopped)
+        if (trace.is_stopped)
           break;
         grow_first(cracks, last.state, control.step);
         if (cracks.ends().empty())
