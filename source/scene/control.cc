@@ -2,7 +2,6 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/instantiate.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/control.h>
 #include <perideal/scene/lists.h>
 
@@ -359,9 +358,9 @@ namespace PeriDeal
     else if (given == "stress intensity")
       measure = AccuracyMeasure::stress_intensity;
     else if (given == "strength")
-      measure = measure_of_strength;
+      measure = AccuracyMeasure::strength;
     else if (given == "path")
-      measure = measure_of_path;
+      measure = AccuracyMeasure::path;
     else if (given.compare(0, flow.size(), flow) == 0)
       {
         measure = AccuracyMeasure::flow;

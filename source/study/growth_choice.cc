@@ -3,11 +3,12 @@
 
 #include "growth_choice.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/base/instantiate.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/simulation/estimate.h>
@@ -130,7 +131,7 @@ namespace PeriDeal
 
       bool measures_path() const
       {
-        return scene.accuracy.measure == measure_of_path;
+        return scene.accuracy.measure == AccuracyMeasure::path;
       }
 
       /** One more step of the search: a line on the console, and in the summary. */

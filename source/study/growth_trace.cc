@@ -3,6 +3,8 @@
 
 #include "growth_trace.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>

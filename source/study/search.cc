@@ -7,7 +7,6 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
-#include <perideal/scene/growth_measure.h>
 
 #include <algorithm>
 #include <chrono>
@@ -91,7 +90,7 @@ namespace PeriDeal
     one.scene->general.automatic = true;
     one.simulation = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
     one.simulation->solve([&](const double) {
-      if (!scene.time.steady && !measures_growth(scene.accuracy))
+      if (!scene.time.steady && !scene.accuracy.measures_growth())
         one.seen.push_back(measure.see(one.simulation->problem(), one.scene->cracks));
     });
     one.numbers = measure.numbers(*one.simulation, one.scene->cracks);
