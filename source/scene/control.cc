@@ -359,9 +359,9 @@ namespace PeriDeal
     else if (given == "stress intensity")
       measure = AccuracyMeasure::stress_intensity;
     else if (given == "strength")
-      measure = measure_of_strength;
+      measure = AccuracyMeasure::strength;
     else if (given == "path")
-      measure = measure_of_path;
+      measure = AccuracyMeasure::path;
     else if (given.compare(0, flow.size(), flow) == 0)
       {
         measure = AccuracyMeasure::flow;

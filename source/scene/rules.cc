@@ -3,7 +3,6 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 
@@ -509,7 +508,7 @@ namespace PeriDeal
     accuracy.refuse(accuracy.measure == AccuracyMeasure::probes && scene.output.probes.empty(),
                     "Measure",
                     "is 'probes', but 'Probes' in section 'Output' has no point.");
-    if (measures_growth(accuracy))
+    if (accuracy.measures_growth())
       refuse_measure_of_growth(scene);
     accuracy.refuse(accuracy.measure == AccuracyMeasure::flow && deforms,
                     "Measure",
@@ -563,7 +562,7 @@ namespace PeriDeal
       const bool is_box = scene.domain.shape == Shape::box;
       if (scene.domain.is_image())
         return "images ('Shape' in section 'Domain')";
-      if (measures_growth(scene.accuracy) && scene.deforms && !moves)
+      if (scene.accuracy.measures_growth() && scene.deforms && !moves)
         return obstacle_to_growth(scene);
       if (!is_box && scene.peridynamics.horizon > 0.)
         return "a horizon that is a length in bodies other than a box ('Shape' and 'Holes' in section 'Domain')";

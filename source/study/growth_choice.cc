@@ -3,11 +3,12 @@
 
 #include "growth_choice.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/base/instantiate.h>
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/simulation/estimate.h>
@@ -130,7 +131,7 @@ namespace PeriDeal
 
       bool measures_path() const
       {
-        return scene.accuracy.measure == measure_of_path;
+        return scene.accuracy.measure == AccuracyMeasure::path;
       }
 
       /** One more step of the search: a line on the console, and in the summary. */
@@ -218,7 +219,9 @@ namespace PeriDeal
                const bool       quiet)
         : GrowthSearch<2>(scene, text, communicator, quiet)
         , tracer(scene, text, communicator, measure)
-        , cracks(cracked_box(scene))
+        , cracks(cracked_box(
+            *scene_variant(scene,
+                           {{"Cracks/Mesh", "removed"}, {"Cracks/Nodes on cracks", "left"}})))
       {}
 
     private:
@@ -272,7 +275,7 @@ namespace PeriDeal
         const double       steps = trace.between_states();
         tell_trace(trace);
         const std::vector<Setting> common  = tracer.settings(most.cracks, scene.time.end_time);
-        const auto                 variant = scene_variant(scene, common);
+        const auto                 variant = tracer.body_with(most.cracks, scene.time.end_time);
         const BodyOfChoice<2>      body(*variant, communicator);
         Search<2> family(body, text, communicator, measure, LimitOfAttempts::classical);
         family.set(common);
@@ -404,7 +407,7 @@ namespace PeriDeal
             setting.second = full_precision(end);
         chosen.model                  = last.attempt.model;
         chosen.estimate               = error + steps;
-        chosen.met                    = family.is_within(tolerance - steps);
+        chosen.met                    = limit.empty() && chosen.estimate <= tolerance;
         chosen.reason                 = family.attempts().reason();
         const bool bonds              = chosen.model == ModelKind::coupled;
         chosen.left                   = {{"mesh", bonds ? 0. : error},

@@ -3,6 +3,8 @@
 
 #include "growth_trace.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
@@ -135,6 +137,18 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::shared_ptr<Scene<dim>> CrackTracer<dim>::body_with(const GrowingCracks &cracks,
+                                                          const double         end_time) const
+  {
+    std::vector<Setting> all = settings(cracks, end_time);
+    // Else cracks near faces of `Cells` would be laid on them.
+    all.emplace_back("Cracks/Mesh", "removed");
+    all.emplace_back("Cracks/Nodes on cracks", "left");
+    return scene_variant(scene, all);
+  }
+
+
+  template <int dim>
   double CrackTracer<dim>::fineness_for(const GrowingCracks &cracks,
                                         const Attempts<dim> &attempts) const
   {
@@ -159,7 +173,7 @@ namespace PeriDeal
   {
     constexpr unsigned int  n_tries = 3;
     constexpr double        finer   = 1.5;
-    const auto              variant = scene_variant(scene, settings(cracks, time));
+    const auto              variant = body_with(cracks, time);
     const BodyOfChoice<dim> body(*variant, communicator);
     const Search<dim>       search(body, text, communicator, measure, LimitOfAttempts::classical);
     TracedState             one{cracks, {}, {}};
@@ -198,6 +212,10 @@ namespace PeriDeal
              end.name +
                " is pressed together by the loads (K_I < 0), where faces that touch matter. "
                "Give 'Horizon' in section 'Peridynamics' as a length.");
+    for (const GrowingCracks::End &end : state.cracks.ends())
+      refuse(!is_seen(state.state, state.cracks.name(end)),
+             "there is no room around " + state.cracks.name(end) +
+               " for a ring of some cells, by which its stress intensities are found.");
     const GriffithState half  = state_of(state.cracks, 0.5 * scene.time.end_time, 1.).state;
     double              apart = std::abs(2. * half.force / state.state.force - 1.);
     for (std::size_t k = 0; k < half.ends.size() && k < state.state.ends.size(); ++k)
@@ -237,9 +255,15 @@ namespace PeriDeal
             cracks.let_through(end); // so near to a side that there is no room for a ring
         const double load = now.state.load();
         if (load > 1. && !trace.states.empty() && trace.states.back().state.load() < 1.)
-          {
+          { // it comes to rest between both
             const TracedState &last = trace.states.back();
-            const double       share =
+            trace.ends_early        = !control.to_end && last.state.force <= best;
+            if (trace.ends_early)
+              {
+                trace.states.push_back(std::move(now));
+                break;
+              }
+            const double share =
               (1. - last.state.load()) / (std::min(load, 2.) - last.state.load());
             cracks = last.cracks;
             grow_first(cracks, last.state, share * control.step);
@@ -256,8 +280,10 @@ namespace PeriDeal
         trace.ends_early =
           !control.to_end && reached < 1. &&
           ((trace.states.size() > 2 && last.state.force <= best) || load < fallen * reached);
+        if (reached >= 1. || trace.ends_early || cracks.ends().empty())
+          break;
         trace.is_stopped = control.may_go_on && !control.may_go_on(seconds() - before);
-        if (reached >= 1. || trace.ends_early || cracks.ends().empty() || trace.is_stopped)
+        if (trace.is_stopped)
           break;
         grow_first(cracks, last.state, control.step);
         if (cracks.ends().empty())

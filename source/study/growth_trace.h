@@ -5,6 +5,7 @@
 
 #include <perideal/study/growing_cracks.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -70,6 +71,9 @@ namespace PeriDeal
 
     /** Entries of the body with these cracks and whole bonds, at the end of the run or before. */
     std::vector<Setting> settings(const GrowingCracks &cracks, const double end_time) const;
+
+    /** The body that these are entries of. */
+    std::shared_ptr<Scene<dim>> body_with(const GrowingCracks &cracks, const double end_time) const;
 
     /** What holds at a time, by the coarsest solution that will do, or one so many times finer. */
     TracedState state_of(const GrowingCracks &cracks,

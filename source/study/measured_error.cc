@@ -9,7 +9,6 @@
 #include <perideal/base/gathered_lists.h>
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/study/naming.h>
@@ -340,7 +339,7 @@ namespace PeriDeal
         numbers.values[side] = flows[side].template get<double>();
         numbers.least = small * std::max(scale_of(all), size_by_range(scene, simulation.problem()));
       }
-    else if (measure == measure_of_strength)
+    else if (measure == AccuracyMeasure::strength)
       {
         const Json          all   = simulation.found()["models"]["auto"];
         const GriffithState state = griffith_state(scene, cracks, all);
@@ -468,7 +467,7 @@ namespace PeriDeal
   {
     if (!scene.time.steady && scene.accuracy.measure != AccuracyMeasure::flow &&
         scene.accuracy.measure != AccuracyMeasure::stress_intensity &&
-        !measures_growth(scene.accuracy))
+        !scene.accuracy.measures_growth())
       return difference_of(fine.seen, coarse.seen, scene.accuracy.measure);
     switch (scene.accuracy.measure)
       {

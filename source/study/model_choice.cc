@@ -8,7 +8,6 @@
 #include <perideal/base/progress.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/rules.h>
 #include <perideal/simulation/estimate.h>
@@ -420,7 +419,7 @@ namespace PeriDeal
     AssertThrow(mode != RunMode::resume,
                 UserError("--resume: 'Models = auto' keeps no checkpoints; run the scene again."));
     refuse_choice(scene);
-    if (measures_growth(scene.accuracy))
+    if (scene.accuracy.measures_growth())
       return run_growth(scene, text, communicator, mode, quiet);
     const BodyOfChoice<dim> body(scene, communicator);
     Choice<dim>(body, text, communicator, quiet).run(mode);
@@ -435,7 +434,7 @@ namespace PeriDeal
   {
     const Progress progress(communicator, quiet);
     refuse_choice(scene);
-    if (measures_growth(scene.accuracy))
+    if (scene.accuracy.measures_growth())
       return describe_growth(scene, text, communicator, quiet);
     const bool               is_nonlocal = scene.peridynamics.horizon > 0.;
     const BodyOfChoice<dim>  body(scene, communicator);

@@ -7,7 +7,6 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/memory.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
@@ -92,7 +91,7 @@ namespace PeriDeal
     one.scene                    = scene_variant(scene, attempt.settings);
     one.scene->general.automatic = true;
     one.simulation   = std::make_unique<Simulation<dim>>(*one.scene, text, communicator, true);
-    const bool grows = measures_growth(scene.accuracy);
+    const bool grows = scene.accuracy.measures_growth();
     const bool many  = !scene.time.steady && scene.deforms && !grows; // numbers, at all times
     one.simulation->solve([&](const double t) {
       if (!scene.time.steady && !grows)

@@ -136,10 +136,12 @@ namespace PeriDeal
   /** In what the accuracy that section `Accuracy` asks for is measured. */
   enum class AccuracyMeasure
   {
-    field,           // root mean square of the error over the body
-    probes,          // largest error at the points of `Probes`
-    flow,            // of what enters through a side
-    stress_intensity // largest of all ends of cracks
+    field,            // root mean square of the error over the body
+    probes,           // largest error at the points of `Probes`
+    flow,             // of what enters through a side
+    stress_intensity, // largest of all ends of cracks
+    strength,         // of the largest force on a side
+    path              // farthest distance between the cracks that have grown
   };
 
 
@@ -157,6 +159,12 @@ namespace PeriDeal
 
     /** Throws UserError. */
     void parse();
+
+    /** What bonds that break lead to is measured. */
+    bool measures_growth() const
+    {
+      return measure == AccuracyMeasure::strength || measure == AccuracyMeasure::path;
+    }
 
     /** As the entry has it. */
     std::string measure_text() const
