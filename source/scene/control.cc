@@ -3,7 +3,6 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/control.h>
-#include <perideal/scene/growth_measure.h>
 #include <perideal/scene/lists.h>
 
 #include <algorithm>
