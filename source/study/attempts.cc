@@ -155,7 +155,10 @@ namespace PeriDeal
       {
         const double n = std::max(fineness * (box.upper[d] - box.lower[d]) / longest,
                                   (first.empty() ? 2. : first[d]) * std::max(1., ratio));
-        cells.push_back(std::max<unsigned int>(2, std::lround(n)));
+        // Few cells get more with the others, or nothing is seen of them.
+        constexpr double few = 8.;
+        cells.push_back(
+          std::max<unsigned int>(2, std::lround(ratio > 1. && n < few ? std::ceil(n - 1e-9) : n)));
         if (family != Family::faces && family != Family::bonds)
           cells.back() = with_points_on_planes(d, cells.back());
       }

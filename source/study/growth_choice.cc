@@ -71,9 +71,10 @@ namespace PeriDeal
 
     std::string cells_of(const std::vector<Setting> &settings)
     {
-      for (const auto &[entry, value] : settings)
-        if (entry == "Domain/Cells")
-          return value;
+      for (const std::string name : {"Domain/Cells", "Domain/Refinements"})
+        for (const auto &[entry, value] : settings)
+          if (entry == name && !value.empty())
+            return name == "Domain/Cells" ? value : "between lines, halved " + value + " times";
       return "";
     }
 

@@ -31,9 +31,33 @@ namespace PeriDeal
     }
 
 
+    /** The same of cells between lines. */
+    double diagonal_between_lines(const Attempt &attempt)
+    {
+      const double halves = std::stod(text_of(attempt, "Domain/Refinements"));
+      double       square = 0.;
+      for (const std::string &piece : split_list(text_of(attempt, "Domain/Cell lines"), ';'))
+        {
+          double last = 0., edge = std::numeric_limits<double>::max();
+          bool   any = false;
+          for (const std::string &place : split_list(piece, ','))
+            {
+              const double at = std::stod(place);
+              edge            = any ? std::min(edge, at - last) : edge;
+              last            = at;
+              any             = true;
+            }
+          square += std::pow(edge / std::exp2(halves), 2);
+        }
+      return std::sqrt(square);
+    }
+
+
     /** The diagonal of the smallest cells. */
     double diagonal_of(const Attempt &attempt, const CrackedBox &box)
     {
+      if (text_of(attempt, "Domain/Cells").empty())
+        return diagonal_between_lines(attempt);
       std::istringstream cells(text_of(attempt, "Domain/Cells"));
       double             square = 0.;
       for (unsigned int d = 0; d < box.dim(); ++d)

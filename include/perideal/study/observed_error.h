@@ -32,7 +32,7 @@ namespace PeriDeal
    * long as there is one difference only, 2.25 is taken, or 1 if @p best is not higher: the first
    * of all solutions is worse than an order would have it. A difference that is small by accident
    * shows no small error: what the one before it said, with the order that is left, counts for
-   * half, and wholly where @p lowest is @p best.
+   * half, and wholly where @p lowest is @p best, and no higher than 1.
    */
   ObservedError observed_error(const std::vector<ComparedSolution> &steps,
                                const double                         lowest,
