@@ -27,9 +27,9 @@ namespace PeriDeal
 
 
     /**
-     * The smallest exponent of r with which a solution may go around a corner of four quadrants with
-     * these moduli, at most 1: that for which the values and fluxes of a cos + b sin, passed on from
-     * quadrant to quadrant, come back after a turn; the trace of what passes them on is 2 then.
+     * The smallest exponent of r, at most 1, with which a solution may go around a corner of four
+     * quadrants with these moduli: values and fluxes of a cos + b sin, passed on from quadrant to
+     * quadrant, come back after a turn, so that the trace of what passes them on is 2.
      */
     double exponent_of(const std::array<double, 4> &moduli)
     {
