@@ -113,11 +113,12 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::judge_softening(Overstretched bond)
   {
-    constexpr double slack = 1e-3; // of limits
-    const auto       state = softness_of(bonds.rows, bond.number);
-    const double     most  = std::max(1., state.reached);
-    const bool       grows = bond.ratio > (1. + slack) * most,
-               is_pressed  = bond.ratio<-slack, has_softened = state.reached> 1.;
+    constexpr double slack        = 1e-3; // of limits
+    const auto       state        = softness_of(bonds.rows, bond.number);
+    const double     most         = std::max(1., state.reached);
+    const bool       grows        = bond.ratio > (1. + slack) * most;
+    const bool       is_pressed   = bond.ratio < -slack;
+    const bool       has_softened = state.reached > 1.;
     if (!grows && !(has_softened && (is_pressed ? state.lost > 0. : state.lost == 0.)))
       return;
     if (!grows && !is_pressed && bond.ratio < 0.)
