@@ -69,7 +69,8 @@ namespace PeriDeal
 
   unsigned int SolverControlParameters::most_iterations(const ElasticSolver elastic_solver) const
   {
-    if (is_given("Maximum iterations") || elastic_solver == ElasticSolver::linear)
+    if (is_given("Maximum iterations") || elastic_solver == ElasticSolver::linear ||
+        elastic_solver == ElasticSolver::newton)
       return max_iterations;
     return elastic_solver == ElasticSolver::conjugate_gradients ? 100000 : 10000000;
   }

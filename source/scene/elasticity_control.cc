@@ -48,11 +48,12 @@ namespace PeriDeal
             "Solver",
             "linear",
             {"linear",
+             "newton",
              "conjugate gradients",
              "dynamic relaxation",
              "adaptive dynamic relaxation",
              "dynamics"}) =
-      "Equilibrium by the linear system, by nonlinear conjugate gradients, or by dynamic relaxation with given or adaptive damping; or "
+      "Equilibrium by the linear system, by Newton's method (where forces are not linear in the displacement), by nonlinear conjugate gradients, or by dynamic relaxation with given or adaptive damping; or "
       "`dynamics`, the motion until `End time`. Where loads depend on t there is an equilibrium at each `Time step` (section `Time`), else one.";
     declare("Preconditioner", EntryType::choice, "multigrid", "", {"multigrid", "none"}) =
       "Of `Solver = conjugate gradients`: multigrid on springs between nearest neighbours, or none as published (Le 2014).";
@@ -122,7 +123,7 @@ namespace PeriDeal
     refuse(
       has_full_kinematics() && solver == ElasticSolver::linear,
       "Kinematics",
-      "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'conjugate gradients' or another solver.");
+      "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'newton' or another solver.");
   }
 
 

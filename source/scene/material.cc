@@ -79,12 +79,22 @@ namespace PeriDeal
       " The stretch at which bonds break follows from it. Without this and Critical stretch they do not break.";
     entry("Critical stretch") =
       "Relative extension at which a bond breaks, instead of Fracture energy" + formula;
-    declare(law.kind, "Law", "linear", {"linear", "viscoelastic", "softening", "formula"}) =
-      "Elasticity: how the force of a bond follows from its extension. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `softening`: bonds lose their "
+    declare(law.kind,
+            "Law",
+            "linear",
+            {"linear", "viscoelastic", "plastic", "softening", "formula"}) =
+      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises "
+      "stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their "
       "force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`).";
     entry("Tensile strength") =
       "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
       " The area under stress over opening is Fracture energy.";
+    entry("Yield stress") =
+      "With `Law = plastic`: the von Mises stress from which on the body yields" + formula +
+      " A phase that shall stay elastic gets a large one.";
+    entry("Hardening modulus", "0") =
+      "With `Law = plastic`: by how much the yield stress grows per equivalent plastic strain" +
+      formula + " 0 or more.";
     declare(law.softening, "Softening", "exponential", {"linear", "bilinear", "exponential"}) =
       "With `Law = softening`: the stress over the opening. `bilinear` has its kink at a third of the strength (Petersson's, for concrete).";
     declare("Relaxation", EntryType::list, "", "1, time") =
@@ -202,6 +212,32 @@ namespace PeriDeal
     }
 
 
+    /** Entries of a body that yields, or entries that another one has not. */
+    void refuse_plastic(const Material &material)
+    {
+      const bool yields = material.law.yields();
+      for (const std::string entry : {"Yield stress", "Hardening modulus"})
+        material.refuse((material.is_given(entry) || material.phases.gives(entry)) && !yields,
+                        entry,
+                        "is for 'Law = plastic'; 'Law' is '" + material.text("Law") +
+                          "'. Leave one of them out.");
+      if (!yields)
+        return;
+      material.refuse(!material.law.yield_stress,
+                      "Yield stress",
+                      "is empty, which 'Law = plastic' needs.");
+      for (unsigned int k = 0; k <= material.phases.all().names.size(); ++k)
+        {
+          const Expression &value = material.law.hardening.formula(static_cast<int>(k) - 1);
+          material.refuse(
+            value.is_constant() && value.value(dealii::Point<1>()) < 0.,
+            "Hardening modulus",
+            "found " + value.text() +
+              ", needs 0 or more: a body whose yield stress falls strains in one row of cells alone, whatever their size. 'Law = softening' has an energy for that.");
+        }
+    }
+
+
     /** The entries of the law in the section, whose kind has been read. Throws UserError. */
     void parse_law(const SceneSection &section, Material::Law &law)
     {
@@ -289,6 +325,8 @@ namespace PeriDeal
     fracture_energy      = optional_property("Fracture energy", physics);
     critical_stretch     = optional_property("Critical stretch", physics);
     law.tensile_strength = optional_property("Tensile strength", physics);
+    law.yield_stress     = optional_property("Yield stress", physics);
+    law.hardening        = property("Hardening modulus");
     if (fracture_energy && critical_stretch)
       error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
@@ -296,6 +334,7 @@ namespace PeriDeal
       refuse_unless_elastic(entry, physics);
     parse_law(*this, law);
     refuse_softening(*this);
+    refuse_plastic(*this);
     if (law.kind == SolidLaw::formula && fracture_energy)
       error(
         "Fracture energy",

@@ -256,7 +256,9 @@ namespace PeriDeal
       {"Thermal expansion", "1/temperature", false, true, false, false},
       {"Fracture energy", "energy/length^2", false, true, false, true},
       {"Critical stretch", "1", false, true, false, true},
-      {"Tensile strength", "force/length^2", false, true, false, true}};
+      {"Tensile strength", "force/length^2", false, true, false, true},
+      {"Yield stress", "force/length^2", false, true, false, true},
+      {"Hardening modulus", "force/length^2", false, true, false, false}};
     return entries;
   }
 

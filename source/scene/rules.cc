@@ -627,6 +627,37 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    template <int dim>
+    void refuse_plastic_body(const BodyParameters<dim> &body, const bool coupled)
+    {
+      if (!body.material.law.yields())
+        return;
+      const auto refuse = [&](const bool is_so, const std::string &why) {
+        body.material.refuse(is_so, "Law", "found 'plastic', " + why);
+      };
+      refuse(
+        coupled,
+        "which finite elements and peridynamics know, but 'coupled' in 'Models' does not. Leave it out.");
+      refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
+      refuse(
+        body.elasticity.is_bond_based(),
+        "a yield stress for shear alone, which 'Model = bond-based' (section 'Peridynamics') cannot have. Use 'state-based'.");
+      refuse(body.elasticity.has_full_kinematics(),
+             "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");
+      refuse(body.material.breaks(),
+             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
+      refuse(!body.cracks.tips.empty(),
+             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+      body.elasticity.refuse(
+        body.elasticity.solver == ElasticSolver::linear,
+        "Solver",
+        "is 'linear', but 'Law = plastic' in section 'Material' is not. Use 'newton', 'conjugate gradients', or 'dynamics'.");
+    }
+  } // namespace
+
+
   template <int dim>
   void refuse_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled)
   {
@@ -644,6 +675,7 @@ namespace PeriDeal
       "Law",
       "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
     refuse_softening_bonds(body, by_elements);
+    refuse_plastic_body(body, coupled);
     const bool is_warm = body.elasticity.computes_temperature ||
                          !is_zero(body.elasticity.temperature_change);
     material.refuse(by_elements && is_warm,
@@ -672,7 +704,7 @@ namespace PeriDeal
     body.elasticity.refuse(
       kind == SolidLaw::formula && body.elasticity.solver == ElasticSolver::linear,
       "Solver",
-      "is 'linear', but 'Law = formula' in section 'Material' is not. Use 'conjugate gradients', or 'dynamics'.");
+      "is 'linear', but 'Law = formula' in section 'Material' is not. Use 'newton', 'conjugate gradients', or 'dynamics'.");
     body.elasticity.refuse(body.elasticity.absolute_reference.has_value(),
                            "Heat of deformation",
                            "is that of the linear law; 'Law' in section 'Material' is '" +

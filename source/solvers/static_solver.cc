@@ -26,6 +26,7 @@ namespace PeriDeal
     {
       static const std::vector<std::pair<std::string, Maker>> list = {
         {"linear", make_linear_statics},
+        {"newton", make_newton},
         {"conjugate gradients", make_conjugate_gradients},
         {"dynamic relaxation", make_dynamic_relaxation},
         {"adaptive dynamic relaxation", make_adaptive_dynamic_relaxation}};

@@ -119,11 +119,12 @@ namespace PeriDeal
     bond_based
   };
 
-  /** How the force of a bond follows from its extension. */
+  /** How forces follow from what the body has gone through. */
   enum class SolidLaw
   {
     linear,
     viscoelastic,
+    plastic,
     softening,
     formula
   };
@@ -149,6 +150,7 @@ namespace PeriDeal
   enum class ElasticSolver
   {
     linear,
+    newton,
     conjugate_gradients,
     dynamic_relaxation,
     adaptive_dynamic_relaxation,

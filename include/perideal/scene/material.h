@@ -45,7 +45,7 @@ namespace PeriDeal
     };
     std::optional<Scatter> scatter;
 
-    /** How the force of a bond follows from its extension (BondLaw). */
+    /** How forces follow from what the body has gone through. */
     struct Law
     {
       SolidLaw                        kind;
@@ -53,6 +53,14 @@ namespace PeriDeal
       Expression                      bond_force; // formula: of the stretch s and the damage
       Softening                       softening;
       std::optional<MaterialProperty> tensile_strength;
+      std::optional<MaterialProperty> yield_stress; // plastic
+      MaterialProperty                hardening;    // of the yield stress over plastic strain
+
+      /** J2 plasticity. */
+      bool yields() const
+      {
+        return kind == SolidLaw::plastic;
+      }
 
       /** Bonds lose their force little by little. */
       bool softens() const

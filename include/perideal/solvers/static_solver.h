@@ -98,6 +98,7 @@ namespace PeriDeal
   // One maker per method, each in its own file.
   std::unique_ptr<StaticSolver> make_linear_statics(ElasticOperator     &op,
                                                     const StaticOptions &options);
+  std::unique_ptr<StaticSolver> make_newton(ElasticOperator &op, const StaticOptions &options);
   std::unique_ptr<StaticSolver> make_conjugate_gradients(ElasticOperator     &op,
                                                          const StaticOptions &options);
   std::unique_ptr<StaticSolver> make_dynamic_relaxation(ElasticOperator     &op,
