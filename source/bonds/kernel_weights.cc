@@ -131,7 +131,7 @@ namespace PeriDeal
   template <int dim>
   bool KernelWeights<dim>::wants_calibration() const
   {
-    return parameters.calibration == Calibration::discrete && family.empty();
+    return parameters.calibration != Calibration::analytic && family.empty();
   }
 
 

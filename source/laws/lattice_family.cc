@@ -170,36 +170,35 @@ namespace PeriDeal
     }
 
 
-    /** Solve the small system A s = 2 in place with row pivoting; false if it is singular. */
-    template <int dim>
+    /** Solve a small system in place with row pivoting; false if it is singular. */
+    template <std::size_t dim>
     bool solve(std::array<std::array<double, dim>, dim> A, std::array<double, dim> &s)
     {
-      s.fill(2.);
       double scale = 0.;
       for (const auto &row : A)
         for (const double a : row)
           scale = std::max(scale, std::abs(a));
-      for (unsigned int c = 0; c < dim; ++c)
+      for (std::size_t c = 0; c < dim; ++c)
         {
-          unsigned int pivot = c;
-          for (unsigned int i = c + 1; i < dim; ++i)
+          std::size_t pivot = c;
+          for (std::size_t i = c + 1; i < dim; ++i)
             if (std::abs(A[i][c]) > std::abs(A[pivot][c]))
               pivot = i;
           if (std::abs(A[pivot][c]) <= 1e-12 * scale)
             return false;
           std::swap(A[c], A[pivot]);
           std::swap(s[c], s[pivot]);
-          for (unsigned int i = c + 1; i < dim; ++i)
+          for (std::size_t i = c + 1; i < dim; ++i)
             {
               const double factor = A[i][c] / A[c][c];
-              for (unsigned int k = c; k < dim; ++k)
+              for (std::size_t k = c; k < dim; ++k)
                 A[i][k] -= factor * A[c][k];
               s[i] -= factor * s[c];
             }
         }
-      for (unsigned int i = dim; i-- > 0;)
+      for (std::size_t i = dim; i-- > 0;)
         {
-          for (unsigned int k = i + 1; k < dim; ++k)
+          for (std::size_t k = i + 1; k < dim; ++k)
             s[i] -= A[i][k] * s[k];
           s[i] /= A[i][i];
         }
@@ -245,7 +244,8 @@ namespace PeriDeal
             for (unsigned int b = 0; b < dim; ++b)
               A[a][b] += member.weight * volume * xi2[a] * xi2[b] / (member.r * member.r);
         }
-      if (!solve<dim>(A, s) || *std::min_element(s.begin(), s.end()) <= 0.)
+      s.fill(2.);
+      if (!solve(A, s) || *std::min_element(s.begin(), s.end()) <= 0.)
         too_small(delta, largest);
       return s;
     }
@@ -266,6 +266,99 @@ namespace PeriDeal
             factor += s[d] * xi2[d] / (member.r * member.r);
           member.weight *= one_factor ? s[0] : factor;
         }
+    }
+
+
+    /** Functions of the direction whose sums shall be those of all directions alike. */
+    template <int dim>
+    constexpr std::size_t n_even = dim *(dim + 1) / 2;
+
+
+    /**
+     * n_a^2 n_b^2, a <= b; on a cubic lattice 1 and sum_a n_a^4, added in order of size, the others
+     * being zero.
+     */
+    template <int dim>
+    std::array<double, n_even<dim>> even_products(const FamilyMember<dim> &member,
+                                                  const Tensor<1, dim>    &spacing,
+                                                  const bool               cubic)
+    {
+      auto n2 = squares<dim>(member.offset, spacing);
+      for (double &n : n2)
+        n /= member.r * member.r;
+      std::array<double, n_even<dim>> products{};
+      if (cubic)
+        {
+          std::sort(n2.begin(), n2.end());
+          products[0] = 1.;
+          for (const double n : n2)
+            products[1] += n * n;
+          return products;
+        }
+      std::size_t k = 0;
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = a; b < dim; ++b)
+          products[k++] = n2[a] * n2[b];
+      return products;
+    }
+
+
+    /** Their means over all directions. */
+    template <int dim>
+    std::array<double, n_even<dim>> means_of_products(const bool cubic)
+    {
+      std::array<double, n_even<dim>> means{};
+      if (cubic)
+        {
+          means[0] = 1.;
+          means[1] = 3. / (dim + 2.);
+          return means;
+        }
+      std::size_t k = 0;
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = a; b < dim; ++b)
+          means[k++] = (a == b ? 3. : 1.) / (dim * (dim + 2.));
+      return means;
+    }
+
+
+    template <int dim>
+    void make_isotropic(const Tensor<1, dim>           &spacing,
+                        const double                    delta,
+                        std::vector<FamilyMember<dim>> &family)
+    {
+      constexpr std::size_t                n       = n_even<dim>;
+      const bool                           cubic   = dim > 1 && is_cubic<dim>(spacing);
+      const double                         volume  = cell_volume<dim>(spacing);
+      double                               largest = 0.;
+      std::array<std::array<double, n>, n> A{};
+      for (unsigned int d = 0; d < dim; ++d)
+        largest = std::max(largest, spacing[d]);
+      for (const FamilyMember<dim> &member : family)
+        {
+          const auto   p = even_products<dim>(member, spacing, cubic);
+          const double g = member.weight * volume * member.r * member.r;
+          for (std::size_t a = 0; a < n; ++a)
+            for (std::size_t b = 0; b < n; ++b)
+              A[a][b] += g * p[a] * p[b];
+        }
+      for (std::size_t k = cubic ? 2 : n; k < n; ++k)
+        A[k][k] = A[0][0];
+      auto s = means_of_products<dim>(cubic);
+      for (double &mean : s)
+        mean *= 2. * dim;
+      bool works = solve(A, s);
+      for (FamilyMember<dim> &member : family)
+        {
+          const auto p      = even_products<dim>(member, spacing, cubic);
+          double     factor = 0.;
+          for (std::size_t k = 0; k < n; ++k)
+            factor += s[k] * p[k];
+          works = works && factor > 0.;
+          member.weight *= factor;
+        }
+      if (!works)
+        too_small(delta, largest);
     }
   } // namespace
 
@@ -295,7 +388,11 @@ namespace PeriDeal
   {
     std::vector<FamilyMember<dim>> family =
       analytic_family<dim>(spacing, delta, shape, n, fraction);
-    scale<dim>(calibration_factors<dim>(family, spacing, delta, calibration), spacing, family);
+    const auto s = calibration_factors<dim>(family, spacing, delta, calibration);
+    if (calibration == Calibration::isotropic)
+      make_isotropic<dim>(spacing, delta, family);
+    else
+      scale<dim>(s, spacing, family);
     return family;
   }
 

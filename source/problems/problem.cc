@@ -156,9 +156,10 @@ namespace PeriDeal
          std::to_string(p.kernel_exponent)},
       {"volume fraction", fractions[static_cast<int>(p.sampling.volume_fraction)]},
       {"calibration",
-       p.sampling.calibration == Calibration::analytic ? "analytic" :
-       families.weights().has_complete_families()      ? "discrete" :
-                                                         "analytic, because no family is complete"},
+       p.sampling.calibration == Calibration::analytic  ? "analytic" :
+       p.sampling.calibration == Calibration::isotropic ? "isotropic" :
+       families.weights().has_complete_families()       ? "discrete" :
+                                                          "analytic, because no family is complete"},
       {"self term", p.sampling.self_term == SelfTerm::none ? "none" : "paper"},
       {"boundary treatment", treatments[static_cast<int>(p.treatment)]},
       {"flux treatment", fluxes[static_cast<int>(p.flux_treatment)]},

@@ -23,9 +23,13 @@ namespace PeriDeal
       "Share of a neighbour's volume that counts: all of it for r <= delta (none); a linear ramp "
       "one spacing wide about r = delta; or the exact part of its lattice cell within the "
       "horizon.";
-    declare(sampling.calibration, "Calibration", "discrete", {"discrete", "analytic"}) =
+    declare(sampling.calibration,
+            "Calibration",
+            "discrete",
+            {"discrete", "isotropic", "analytic"}) =
       "What makes a linear field conduct Conductivity times its gradient: the sum over a full "
-      "family of the lattice (exact at any m), or the integral (low by 7 % at m = 3 in 2D).";
+      "family of the lattice (exact at any m), or the integral (low by 7 % at m = 3 in 2D). `isotropic`, on lattices: the sum, by factors that depend on the direction of a bond, with which "
+      "solids have their moduli in all directions.";
     declare(sampling.self_term, "Self term", "none", {"none", "paper"}) =
       "The term of a node with itself as published by Bobaru and Duangpanya; inflates the "
       "conductivity.";
@@ -106,7 +110,7 @@ namespace PeriDeal
                      "use 'both'.");
     // On square cells any factor cancels; on others the factors of `discrete` make theta exact
     // (doc/elasticity.md).
-    refuse_in_solids(sampling.calibration != Calibration::discrete,
+    refuse_in_solids(sampling.calibration == Calibration::analytic,
                      "Calibration",
                      "bonds are scaled by the sums over their own families. Leave the entry out.",
                      "'analytic' is not for use");

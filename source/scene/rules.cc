@@ -65,6 +65,9 @@ namespace PeriDeal
     pd.refuse(!domain.has_lattice() && pd.sampling.volume_fraction == VolumeFraction::exact,
               "Volume fraction",
               "'exact'" + needs_lattice);
+    pd.refuse(!domain.has_lattice() && pd.sampling.calibration == Calibration::isotropic,
+              "Calibration",
+              "'isotropic'" + needs_lattice);
     pd.refuse(!domain.has_lattice() && pd.sampling.self_term == SelfTerm::paper,
               "Self term",
               "'paper'" + needs_lattice);

@@ -253,7 +253,7 @@ namespace PeriDeal
         return false;
       const bool complete = pd.treatment == BoundaryTreatment::exchange ||
                             (pd.treatment == BoundaryTreatment::fictitious_mirror &&
-                             pd.sampling.calibration == Calibration::discrete &&
+                             pd.sampling.calibration != Calibration::analytic &&
                              pd.sampling.self_term == SelfTerm::none && !scene.domain.has_voids());
       return complete || !runs(scene, ModelKind::peridynamics);
     }

@@ -74,7 +74,7 @@ namespace PeriDeal
               {"kernel exponent", bonds.kernel_exponent},
               {"volume fraction", name_of(bonds.sampling.volume_fraction)},
               {"calibration",
-               bonds.sampling.calibration == Calibration::discrete ? "discrete" : "analytic"},
+               bonds.sampling.calibration == Calibration::analytic ? "analytic" : "discrete"},
               {"m", ratio},
               {"break", scene.material.breaks()}};
     }

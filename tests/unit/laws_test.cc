@@ -274,6 +274,63 @@ TEST(Laws, LatticeFamilyIsSymmetricSortedAndCalibrated)
 }
 
 
+namespace
+{
+  /** The largest error of all fourth moments, and of the second ones. */
+  template <int dim>
+  double anisotropy(const dealii::Tensor<1, dim> &h, const double m, const unsigned int n)
+  {
+    dealii::Tensor<4, dim> sum;
+    double                 volume = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      volume *= h[d];
+    for (const auto &member : lattice_family<dim>(h,
+                                                  m * *std::min_element(h.begin_raw(), h.end_raw()),
+                                                  KernelShape::conical,
+                                                  n,
+                                                  VolumeFraction::linear,
+                                                  Calibration::isotropic))
+      {
+        EXPECT_GT(member.weight, 0.);
+        dealii::Tensor<1, dim> xi;
+        for (unsigned int d = 0; d < dim; ++d)
+          xi[d] = member.offset[d] * h[d];
+        const auto pair = outer_product(xi, xi);
+        sum += member.weight * volume / xi.norm_square() * outer_product(pair, pair);
+      }
+    double worst = 0.;
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = 0; b < dim; ++b)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double wanted =
+                2. / (dim + 2.) * ((a == b && c == d) + (a == c && b == d) + (a == d && b == c));
+              worst = std::max(worst, std::abs(sum[a][b][c][d] - wanted));
+            }
+    return worst;
+  }
+} // namespace
+
+
+TEST(Laws, IsotropicFamilies)
+{
+  EXPECT_LT(anisotropy<1>(cubic<1>(0.1), 3., 0), 1e-14);
+  for (const unsigned int n : {0u, 1u, 2u})
+    for (const double m : {1.5, 2., 3., 3.015, 6.})
+      {
+        EXPECT_LT(anisotropy<2>(cubic<2>(0.1), m, n), 1e-13) << m << ' ' << n;
+        EXPECT_LT(anisotropy<3>(cubic<3>(0.1), m, n), 1e-13) << m << ' ' << n;
+      }
+  EXPECT_LT(anisotropy<2>(dealii::Tensor<1, 2>({0.1, 0.13}), 3., 0), 1e-13);
+  EXPECT_LT(anisotropy<3>(dealii::Tensor<1, 3>({0.1, 0.08, 0.11}), 3., 1), 1e-13);
+  // Bonds along the axes alone: nothing holds shear.
+  const std::string message = SceneTests::message_of([] { anisotropy<2>(cubic<2>(0.1), 0.9, 0); });
+  EXPECT_NE(message.find("'Horizon ratio' in section 'Peridynamics'"), std::string::npos)
+    << message;
+}
+
+
 TEST(Laws, FamilySizes)
 {
   const auto size = [](const double m, const KernelShape shape, const VolumeFraction fraction) {

@@ -33,11 +33,19 @@ namespace PeriDeal
    * direction a, V the product of the spacings: by one factor on a cubic lattice, else by sum_a s_a
    * xi_a^2/r^2 with s from a dim x dim system.
    *
+   * With Calibration::isotropic by sum_{a<=b} s_ab n_a^2 n_b^2, n = xi/r, such that
+   *
+   *   sum_j w V r^2 n_a n_b n_c n_d = 2/(dim + 2) (d_ab d_cd + d_ac d_bd + d_ad d_bc)
+   *
+   * (of which the former is the trace): all that a solid under a uniform strain knows of a family
+   * (laws/family_moments.h) is then the same in all directions. On a cubic lattice the factor is
+   * s_0 + s_1 sum_a n_a^4.
+   *
    * @param spacing of the lattice in each direction; the smallest is the h of the linear fraction
    * @param n       exponent of the bond length, 0, 1 or 2
    *
-   * Throws UserError if a direction has no neighbours or its factor s_a is not positive: the
-   * horizon is too small for the spacing.
+   * Throws UserError if a direction has no neighbours or a factor is not positive: the horizon is
+   * too small for the spacing.
    */
   template <int dim>
   std::vector<FamilyMember<dim>> lattice_family(const dealii::Tensor<1, dim> &spacing,

@@ -28,6 +28,7 @@ namespace PeriDeal
   enum class Calibration
   {
     discrete,
+    isotropic,
     analytic
   };
 
