@@ -247,7 +247,7 @@ namespace PeriDeal
         const SolidBonds<dim> &bonds = states->bonds();
         if (families_end(scene))
           stiffer = surface_stiffness(bonds);
-        if (bonds.thinnest < std::numeric_limits<double>::infinity())
+        if (bonds.corrections.thinnest < std::numeric_limits<double>::infinity())
           {
             double volume = 0.;
             for (unsigned int i = 0; i < node_set->n_owned(); ++i)
@@ -349,6 +349,9 @@ namespace PeriDeal
                 return states->breaking().critical_stretches()[i];
               });
           }
+        if (const auto &yielding = states->bonds().yielding)
+          list.add("plastic_strain",
+                   [&](const unsigned int i) { return yielding->plastic_strain(i); });
         list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
         return list.take();
       }
@@ -464,7 +467,7 @@ namespace PeriDeal
             "has not found all factors: moments of families differ from those of a complete one by up to " +
             number_text(states->bonds().corrections.gap) + " of them.");
         const auto  &family   = states->bonds().families.weights().members();
-        const double thinnest = states->bonds().thinnest;
+        const double thinnest = states->bonds().corrections.thinnest;
         for (const std::string &note :
              {note_on_few_bonds(scene, family),
               note_on_bending(scene),
@@ -547,6 +550,9 @@ namespace PeriDeal
                                          change.size() > 0 ?
                                            change.local_element(i) :
                                            scene.elasticity.temperature_change.value(p)));
+            if (dim == 2 && scene.elasticity.plane == PlaneState::strain &&
+                states->bonds().yielding)
+              stress.back()[2][2] = states->bonds().yielding->out_of_plane(i);
             if constexpr (dim == 2)
               if (scene.material.law.kind == SolidLaw::viscoelastic)
                 {

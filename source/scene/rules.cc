@@ -633,7 +633,9 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    void refuse_plastic_body(const BodyParameters<dim> &body, const bool coupled)
+    void refuse_plastic_body(const BodyParameters<dim> &body,
+                             const bool                 by_elements,
+                             const bool                 coupled)
     {
       if (!body.material.law.yields())
         return;
@@ -653,6 +655,14 @@ namespace PeriDeal
              "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
       refuse(!body.cracks.tips.empty(),
              "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+      body.peridynamics.refuse(
+        !by_elements && body.peridynamics.corrects_elastic_bonds(),
+        "Surface correction",
+        "found '" + body.peridynamics.text("Surface correction") +
+          "', whose factors of bonds are those of linear forces; with 'Law = plastic' in section 'Material' use 'auto', 'fictitious nodes' or 'none'.");
+      const bool is_warm = body.elasticity.computes_temperature ||
+                           !is_zero(body.elasticity.temperature_change);
+      refuse(is_warm, "which knows no 'Temperature change' (section 'Elasticity').");
       body.elasticity.refuse(
         body.elasticity.solver == ElasticSolver::linear,
         "Solver",
@@ -678,7 +688,7 @@ namespace PeriDeal
       "Law",
       "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
     refuse_softening_bonds(body, by_elements);
-    refuse_plastic_body(body, coupled);
+    refuse_plastic_body(body, by_elements, coupled);
     const bool is_warm = body.elasticity.computes_temperature ||
                          !is_zero(body.elasticity.temperature_change);
     material.refuse(by_elements && is_warm,

@@ -218,6 +218,19 @@ Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Models=coupled & Coupli
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Models=finite elements & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'Temperature change' | 'Models = peridynamics'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Peridynamics/Operator form=lattice => 'Operator form' | 'Law' | 'auto'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'Temperature change' | plane strain
+Material/Yield stress=1 => 'Yield stress' | 'Law = plastic' | 'linear'
+Material/Hardening modulus=1 => 'Hardening modulus' | 'Law = plastic' | 'linear'
+Material/Law=plastic => 'Yield stress' | is empty
+Material/Law=plastic & Material/Yield stress=0 & Elasticity/Solver=newton => 'Yield stress' | 0 | greater than 0
+Material/Law=plastic & Material/Yield stress=1 => 'Solver' | 'linear' | 'newton'
+Material/Law=plastic & Material/Yield stress=1 & Material/Hardening modulus=-1 & Elasticity/Solver=newton => 'Hardening modulus' | -1 | 'Law = softening'
+Material/Law=plastic & Material/Yield stress=1 & Elasticity/Model=bond-based & Elasticity/Solver=newton => 'Law' | 'plastic' | 'state-based'
+Material/Law=plastic & Material/Yield stress=1 & Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Law' | small displacements | 'Kinematics = linear'
+Material/Law=plastic & Material/Yield stress=1 & Material/Fracture energy=1 & Elasticity/Solver=newton => 'Law' | do not break
+Material/Law=plastic & Material/Yield stress=1 & Models=coupled & Coupling/Zone=everywhere & Elasticity/Solver=newton => 'Law' | 'plastic' | 'coupled'
+Material/Law=plastic & Material/Yield stress=1 & Peridynamics/Surface correction=moments & Elasticity/Solver=newton => 'Surface correction' | 'moments' | 'fictitious nodes'
+Material/Law=plastic & Material/Yield stress=1 & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 & Elasticity/Solver=newton => 'Law' | 'plastic' | 'Temperature change'
+Material/Law=plastic & Material/Yield stress=1 & Peridynamics/Operator form=lattice & Elasticity/Solver=newton => 'Operator form' | 'Law' | 'auto'
 Material/Law=formula & Material/Bond force=s & Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=splice & Elasticity/Solver=conjugate gradients => 'Scheme' | 'splice' | 'Law = linear'
 Material/Law=formula => 'Bond force' | is empty
 Material/Law=formula & Material/Bond force=s+ => 'Bond force' | column 2

@@ -42,8 +42,8 @@ namespace PeriDeal
         const auto images =
           beyond_sides([&](const types::boundary_id side) { return goes_on_beyond(body, side); },
                        &thin);
-        thinnest       = thin.thinnest;
-        const bool all = completes_at_surfaces(body) || thin.any;
+        corrections.thinnest = thin.thinnest;
+        const bool all       = completes_at_surfaces(body) || thin.any;
         rows.go_on_beyond(
           search().on_mesh(images,
                            all ?
@@ -61,7 +61,7 @@ namespace PeriDeal
       return;
     rows.go_on_beyond(search().on_lattice(sides, completes),
                       !body.elasticity.has_full_kinematics() && !law.any() &&
-                        !body.material.law.softens() &&
+                        !body.material.law.softens() && !body.material.law.yields() &&
                         !families.cracks().history().changes_ever());
     // The lattice knows what is complete to the last bit.
     const double complete = rows.complete_weighted;
@@ -115,9 +115,14 @@ namespace PeriDeal
     laws.weighted.update_ghost_values();
     if (body.peridynamics.corrects_elastic_bonds())
       correct_surface(body);
+    const Material::Law &of_scene = body.material.law;
     rows.find_springs(body.elasticity.has_full_kinematics(),
-                      body.material.law.softens() ? BondSoftness::n : law.n_history());
+                      of_scene.softens() ? BondSoftness::n :
+                      of_scene.yields()  ? YieldingFamilies<dim>::n_history :
+                                           law.n_history());
     sums.take_lattice();
+    if (of_scene.yields())
+      yielding = std::make_unique<YieldingFamilies<dim>>(families, ends, rows, laws, body);
   }
 
 
@@ -143,8 +148,9 @@ namespace PeriDeal
         stored.moments[k] *= factors.dilatation[k];
         stored.springs[k] *= factors.dilatation[k] * factors.dilatation[k] / factors.extension[k];
       }
-    laws.weighted = factors.q;
-    corrections   = {factors.n_left, factors.gap};
+    laws.weighted      = factors.q;
+    corrections.n_left = factors.n_left;
+    corrections.gap    = factors.gap;
     laws.weighted.update_ghost_values();
   }
 

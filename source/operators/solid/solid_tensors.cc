@@ -53,9 +53,15 @@ namespace PeriDeal
           const double         x2     = xi.norm_square();
           const double         weight = full ? kinematics.length(bond) / std::sqrt(x2) :
                                                (bond.moment * xi) / x2; // W
-          const double product = bond.spring * bonds.forces.effective_moment(u.begin(), i, bond);
           gradient += weight * outer_product(eta, xi);
           shape += weight * outer_product(xi, xi);
+          if (bonds.yielding)
+            {
+              stress +=
+                weight * bonds.yielding->force(i, bond, several_phases) * outer_product(xi, xi);
+              return;
+            }
+          const double product = bond.spring * bonds.forces.effective_moment(u.begin(), i, bond);
           // V_i V_j t/x of this end, or with several phases the mean of both; of a fictitious node
           // with that of which it is an image. What the spring has of this end:
           const unsigned int   o   = ends.origin(j);

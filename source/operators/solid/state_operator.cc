@@ -143,6 +143,11 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::multiply(Vector &y, const Vector &x) const
   {
+    if (solid.yielding && solid.yielding->has_tangent())
+      {
+        solid.yielding->multiply(y, x);
+        return;
+      }
     x.update_ghost_values();
     sum_forces(y, x, true);
     if (solid.kinematics.is_full())
@@ -164,6 +169,11 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_forces(Vector &y, const Vector &u, const double t) const
   {
+    if (solid.yielding)
+      {
+        solid.yielding->find_forces(y, u);
+        return;
+      }
     if (!solid.forces.is_bond_by_bond())
       {
         multiply(y, u);
@@ -184,6 +194,12 @@ namespace PeriDeal
   {
     if (!nonlinear())
       return;
+    if (solid.yielding)
+      {
+        solid.yielding->linearize(u);
+        contact->linearize(u);
+        return;
+      }
     u.update_ghost_values();
     find_tensions(u, true);
     solid.forces.linearize(u.begin(), tau);
@@ -195,7 +211,7 @@ namespace PeriDeal
   template <int dim>
   double StateOperator<dim>::largest_stretch(const Vector &u) const
   {
-    if (!nonlinear())
+    if (!nonlinear() || solid.yielding) // which makes no body stiffer
       return 0.;
     u.update_ghost_values();
     const double largest = solid.forces.largest_stretch(u.begin());
@@ -244,6 +260,8 @@ namespace PeriDeal
   double StateOperator<dim>::energy(const Vector &u) const
   {
     const Nodes<dim> &nodes = solid.families.nodes();
+    if (solid.yielding)
+      return solid.yielding->energy(u) + contact->energy(u);
     if (solid.law.any())
       return solid.forces.energy_of(solid.rows.body.nodes, u) + contact->energy(u);
     u.update_ghost_values();
@@ -267,6 +285,11 @@ namespace PeriDeal
   template <int dim>
   NodalTensors<dim> StateOperator<dim>::tensors(const Vector &u) const
   {
+    if (solid.yielding)
+      {
+        solid.yielding->find(u);
+        return nodal_tensors(solid, u, tau);
+      }
     u.update_ghost_values();
     find_tensions(u, solid.kinematics.is_strained() || solid.law.any());
     return nodal_tensors(solid, u, tau);
@@ -300,6 +323,8 @@ namespace PeriDeal
   template <int dim>
   Spectrum StateOperator<dim>::spectrum() const
   {
+    if (solid.yielding) // steps have to be stable where it does not, any more
+      solid.yielding->forget_tangent();
     const Vector of_dilatations = find_sums_of_dilatations(solid);
     const double bound = largest_row(of_dilatations, true, std::sqrt(static_cast<double>(dim)));
     return {bound, sharp_bound(*this, bound, [&](Vector &vector) { this->fill_noise(vector); })};
@@ -332,7 +357,8 @@ namespace PeriDeal
   template <int dim>
   Inversion StateOperator<dim>::inverted(const Vector &u) const
   {
-    if (solid.law.any() && !solid.kinematics.is_full()) // displacements may be of any size
+    // Displacements may be of any size.
+    if ((solid.law.any() || solid.yielding) && !solid.kinematics.is_full())
       return {};
     const Nodes<dim> &nodes  = solid.families.nodes();
     const auto       &layout = *nodes.partitioner();
@@ -371,6 +397,7 @@ namespace PeriDeal
                   solid.kinematics.memory_consumption() + solid.forces.memory_consumption() +
                   rows.memory_consumption() + solid.sums.memory_consumption() +
                   (solid.ends.images ? solid.ends.images->memory_consumption() : 0) +
+                  (solid.yielding ? solid.yielding->memory_consumption() : 0) +
                   contact->memory_consumption();
     size.form = solid.sums.has_lattice() ? "lattice" : "stored";
     return size;
@@ -380,6 +407,8 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::accept(const Vector &u, const double t)
   {
+    if (solid.yielding)
+      this->released_beside.by_law += solid.yielding->accept(u);
     if (!solid.law.any())
       return;
     solid.law.set_time(t);
@@ -493,8 +522,9 @@ namespace PeriDeal
     const std::vector<unsigned int> &losing = breakage.nodes_at_work();
     const double n_losing = Utilities::MPI::sum(1. * losing.size(), nodes.communicator());
     double       hinder   = n_losing > 0.1 * nodes.n_global() ? 1. : 0.;
-    if (solid.law.any() || (nonlinear() ? solid.ends.images != nullptr :
-                                          !solid.sums.has_lattice() || solid.thermal.any()))
+    if (solid.law.any() || solid.yielding ||
+        (nonlinear() ? solid.ends.images != nullptr :
+                       !solid.sums.has_lattice() || solid.thermal.any()))
       hinder = 1.;
     for (const unsigned int i : losing)
       {
@@ -581,11 +611,13 @@ namespace PeriDeal
     });
     if (archive.loads() && this->brittle())
       follow_bonds();
-    if (!solid.law.any())
+    if (!solid.law.any() && !solid.yielding)
       return;
     const Archive::Part part(archive, "law");
     solid.law.exchange(archive);
     archive.exchange("dissipated", this->released_beside.by_law);
+    if (solid.yielding)
+      solid.yielding->exchange(archive, keys);
     if (solid.law.n_history() > 0)
       exchange_histories(solid.rows, archive, keys, solid.law.n_history());
   }

@@ -5,8 +5,10 @@
 
 #include <perideal/operators/solid/bond_forces.h>
 #include <perideal/operators/solid/solid_sums.h>
+#include <perideal/operators/solid/yielding_families.h>
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace PeriDeal
@@ -43,14 +45,18 @@ namespace PeriDeal
     SolidSums<dim>      sums;
     BondKinematics<dim> kinematics;
     BondForces<dim>     forces;
-    // Of a mesh: least thickness of the body behind free sides, where it is thin (thin_on_mesh()).
-    double thinnest = std::numeric_limits<double>::infinity();
 
-    /** What `Surface correction = moments` has found. */
+    std::unique_ptr<YieldingFamilies<dim>> yielding; // or none: in place of the forces
+
+    /** What has been found at surfaces. */
     struct Corrections
     {
+      // By `Surface correction = moments`:
       unsigned long long n_left = 0;  // nodes of all processes that are as they were
       double             gap    = 0.; // SurfaceFactors
+      // Of a mesh: least thickness of the body behind free sides, where it is thin
+      // (thin_on_mesh()).
+      double thinnest = std::numeric_limits<double>::infinity();
     } corrections;
 
   private:

@@ -35,7 +35,7 @@ namespace PeriDeal
    * bonds between it repels each other (ShortRangeContact).
    *
    * With another law than the linear one forces follow from extensions bond by bond, and K is the
-   * tangent (BondKinematics, BondLaw).
+   * tangent (BondKinematics, BondLaw); where the body yields, family by family (YieldingFamilies).
    *
    * Viscosity (Le 2014 eq 2.43) is K without the dilatations. Bonds are those of SolidBonds; which
    * break, BondBreaking decides.
@@ -71,7 +71,8 @@ namespace PeriDeal
     double       damping_bound() const override;
     bool         nonlinear() const override
     {
-      return solid.kinematics.is_full() || (solid.law.any() && !solid.law->is_linear());
+      return solid.kinematics.is_full() || solid.yielding ||
+             (solid.law.any() && !solid.law->is_linear());
     }
 
     void accept(const Vector &u, const double t) override;

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/archive.h>
+#include <perideal/laws/ordinary_plasticity.h>
+#include <perideal/operators/solid/bond_table.h>
+
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The bonds of a solid that yields (OrdinaryPlasticity), with linear kinematics. With the stretch
+   * s = e/x of a bond, S = W x^2 and alpha = b/q an end makes of its family
+   *
+   *   theta = d sum S s/(V q),  s_e = s - theta/d - s_p,  D = alpha/(2 V) sum S s_e^2,
+   *
+   * and pulls along W xi by d p/q + alpha r s_e. Of each end a bond remembers s_p: both numbers
+   * stand in the rows of both ends (the history of BondRows, that of the row's own node first), so
+   * that processes exchange what nodes make of their families and nothing of bonds. Fictitious
+   * nodes have no families: of bonds to them one end counts.
+   *
+   * Trials leave nothing behind until accept(). Ghosts of displacements need not be up to date.
+   */
+  template <int dim>
+  class YieldingFamilies
+  {
+  public:
+    static constexpr unsigned int n_history = 2; // of a bond
+
+    /**
+     * All have to outlive this object; springs of the bonds have been found. Collective. Throws
+     * UserError: a yield stress that is not positive.
+     */
+    YieldingFamilies(const Families<dim>       &families,
+                     const BondEnds<dim>       &ends,
+                     BondTable<dim>            &bonds,
+                     const NodeLaws<dim>       &laws,
+                     const BodyParameters<dim> &body);
+
+    /** What families make of u. Collective. */
+    void find(const Vector &u) const;
+
+    /** y = -F at u. Collective. */
+    void find_forces(Vector &y, const Vector &u) const;
+
+    /** What is stored, by hardening, too. Collective. */
+    double energy(const Vector &u) const;
+
+    /**
+     * The yield stress without hardening times what plastic strains have grown by in the step to u,
+     * by volume. Collective.
+     */
+    double plastic_work(const Vector &u) const;
+
+    /**
+     * Go on from u. Returns what the step has dissipated: the work by the mean of the forces before
+     * and now, less what of it is stored; 0 of the first state, to which no step leads. Where steps
+     * are short that is plastic_work(). Collective.
+     */
+    double accept(const Vector &u);
+
+    /** Collective. */
+    void exchange(Archive &archive, const NodeKeys &keys);
+
+    /** Make multiply() the tangent at u. Collective. */
+    void linearize(const Vector &u);
+
+    /** Nodes yielded at the last linearize(): else K is that of the elastic body. */
+    bool has_tangent() const
+    {
+      return tangent.any;
+    }
+
+    /** K is that of the elastic body, until the next linearize(): no body that yields is stiffer. */
+    void forget_tangent()
+    {
+      tangent.any = false;
+    }
+
+    /** y = K x of the tangent. Collective. */
+    void multiply(Vector &y, const Vector &x) const;
+
+    /** The equivalent plastic strain of an owned node, at the last accepted step. */
+    double plastic_strain(const unsigned int i) const
+    {
+      return states[i].strain;
+    }
+
+    /** In plane strain, the stress of an owned node out of the plane, at the last find(). */
+    double out_of_plane(const unsigned int i) const
+    {
+      return trial.answers[i].out_of_plane;
+    }
+
+    /**
+     * By what a bond of an owned node pulls along W xi, at the last find(): this end alone, or
+     * half of both.
+     */
+    double force(const unsigned int i, const SolidBond<dim> &bond, const bool half_of_both) const;
+
+    std::size_t memory_consumption() const;
+
+  private:
+    /** Bonds of a node, among those in the body or beyond its sides. */
+    struct Span
+    {
+      std::size_t begin = 0, end = 0;
+    };
+
+    /** Numbers of each bond, in the order of rows. */
+    struct OfBonds
+    {
+      std::vector<double> body, beyond;
+    };
+
+    /** What the other ends of bonds have to know of a node. */
+    enum Number : unsigned int
+    {
+      tension,    // d p/q - alpha r theta/d
+      stiffness,  // alpha r
+      dilatation, // theta/d
+      lost,       // 1 - r
+      n_numbers
+    };
+
+    /** The same where it is linear: changes of the tension, of alpha r; alpha r. */
+    enum Change : unsigned int
+    {
+      of_tension,
+      of_stiffness,
+      kept,
+      n_changes
+    };
+
+    /** visit(i, in the body, beyond) of all owned nodes. */
+    template <typename Visit>
+    void for_each_family(const Visit &visit) const;
+
+    /** Of forces that are force(i, rows, bond, far end, whether that has a family). */
+    template <typename Force>
+    void sum_forces(Vector &y, const Force &force) const;
+
+    bool        knows(const Vector &u) const;
+    void        remember();
+    std::size_t size_of(const OfBonds &numbers) const
+    {
+      return (numbers.body.capacity() + numbers.beyond.capacity()) * sizeof(double);
+    }
+
+    const Families<dim>                   &families;
+    const BondEnds<dim>                   &ends;
+    BondTable<dim>                        &bonds;
+    const NodeLaws<dim>                   &laws;
+    std::vector<OrdinaryPlasticity>        materials; // of owned nodes, or a single one
+    std::vector<OrdinaryPlasticity::State> states;    // of owned nodes
+
+    struct
+    {
+      bool                                    known = false, has_forces = false;
+      Vector                                  displacement, forces, numbers;
+      std::vector<OrdinaryPlasticity::Answer> answers;
+      OfBonds                                 stretches;
+    } mutable trial;
+
+    struct
+    {
+      bool   begun  = false;
+      double stored = 0.;
+      Vector displacement, forces;
+    } accepted;
+
+    struct
+    {
+      bool                                    any = false;
+      mutable Vector                          changes;
+      std::vector<OrdinaryPlasticity::Answer> answers;
+      OfBonds                                 elastic; // s_e of both ends
+    } tangent;
+  };
+} // namespace PeriDeal
