@@ -65,7 +65,7 @@ namespace
   };
 
 
-  /** A strain that changes its way every eight steps, by about an eighth of that of yielding. */
+  /** A strain that changes its way every eight steps, by about a fifth of that of yielding. */
   class RandomPath
   {
   public:
@@ -75,7 +75,7 @@ namespace
 
     const Strain &step()
     {
-      std::normal_distribution<double> normal(0., 4e-4);
+      std::normal_distribution<double> normal(0., 2e-4);
       if (n++ % 8 == 0)
         for (unsigned int k = 0; k < 6; ++k)
           way.access_raw_entry(k) = is_there(k) ? normal(generator) : 0.;
@@ -131,7 +131,7 @@ namespace
   TEST(J2Plasticity, tangent_and_energy_along_random_paths)
   {
     for (const StressState kind : kinds)
-      for (const double H : {0., 50., 5000.})
+      for (const double H : {0., 50., 500.})
         {
           PointOfBody        point(kind, H);
           RandomPath         path(kind);
@@ -169,8 +169,8 @@ namespace
                 }
               EXPECT_NEAR(point.state[0] + point.state[1] + point.state[2], 0., 1e-15);
             }
-          EXPECT_GT(n_flowing, 50u);
-          EXPECT_LT(n_flowing, 195u);
+          EXPECT_GT(n_flowing, 40u);
+          EXPECT_LT(n_flowing, 200u);
         }
   }
 
@@ -300,6 +300,8 @@ namespace
   {
     Settings          settings = yielding<dim>(degree, plane);
     const std::string mesh     = distorted_mesh<dim>();
+    settings.push_back({"Elasticity/Solver", "dynamics"}); // nothing holds it
+    settings.push_back({"Material/Density", "1.0"});
     settings.push_back({"Domain/Shape", "mesh file"});
     settings.push_back({"Domain/Mesh file", mesh});
     Body<dim> body(settings, ModelKind::finite_elements);
