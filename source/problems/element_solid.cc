@@ -259,6 +259,25 @@ namespace PeriDeal
     }
 
 
+    /** Of each of some points of a unit cell the nearest one at which a law knows its stress. */
+    template <int dim>
+    std::vector<unsigned int> nearest_points(const Quadrature<dim> &points,
+                                             const unsigned int     degree)
+    {
+      const QGauss<dim>              of_law(degree + 1);
+      const std::vector<Point<dim>> &list = of_law.get_points();
+      std::vector<unsigned int>      nearest;
+      for (const Point<dim> &p : points.get_points())
+        nearest.push_back(std::min_element(list.begin(),
+                                           list.end(),
+                                           [&](const Point<dim> &a, const Point<dim> &b) {
+                                             return p.distance_square(a) < p.distance_square(b);
+                                           }) -
+                          list.begin());
+      return nearest;
+    }
+
+
     template <int dim>
     class ElementSolid : public SolidField<dim>
     {
@@ -343,6 +362,7 @@ namespace PeriDeal
                                                  scene.elasticity.temperature_change.value(
                                                    reader.inner_points()[k]));
         const auto          velocities = velocities_at_points(scene, reader, this->velocity);
+        const auto          by_law     = stresses_by_law(reader);
         std::vector<double> rows;
         for (std::size_t k = 0; k < points.size(); ++k)
           {
@@ -353,20 +373,21 @@ namespace PeriDeal
                             std::numeric_limits<double>::quiet_NaN());
                 continue;
               }
-            Tensor<2, dim> gradient, by_law;
+            Tensor<2, dim> gradient, by_relaxation;
             double         values[dim];
             for (unsigned int d = 0; d < dim; ++d)
               {
                 values[d]   = u[d][k];
                 gradient[d] = slopes[d][k];
                 if (!relaxed[d].empty())
-                  by_law[d] = relaxed[d][k];
+                  by_relaxation[d] = relaxed[d][k];
               }
             const Point<dim>     &p = reader.inner_points()[k];
             SymmetricTensor<2, 3> stress =
-              stress_of_strain(symmetrize(gradient), scene, p, changes[k]);
+              by_law.empty() ? stress_of_strain(symmetrize(gradient), scene, p, changes[k]) :
+                               by_law[k];
             if (change_by_law.size() > 0)
-              stress += shear_stress(symmetrize(by_law), scene, p);
+              stress += shear_stress(symmetrize(by_relaxation), scene, p);
             append_row(values, stress, dim, rows);
             if (scene.elasticity.computes_temperature)
               rows.push_back(changes[k] + scene.elasticity.reference_temperature);
@@ -388,6 +409,13 @@ namespace PeriDeal
         list.add_stress(stress);
         list.add_strain(strain);
         list.add_temperature(elements->temperature_change(), scene);
+        if (const auto *const stresses = elements->beside().stresses)
+          for (const auto &[name, number] : stresses->law().shown())
+            {
+              const std::vector<double> values =
+                nodal_means([&](const LawPoint &point) { return point.state[number]; });
+              list.add(name, [&](const unsigned int i) { return values[i]; });
+            }
         if (const std::vector<double> lost = damage(); !lost.empty())
           {
             list.add("damage", [&](const unsigned int i) { return lost[i]; });
@@ -572,13 +600,17 @@ namespace PeriDeal
                              update_values | update_gradients | update_quadrature_points |
                                update_JxW_values);
         std::vector<types::global_dof_index> indices(handler.get_fe().n_dofs_per_cell());
-        relaxation = find_relaxation();
+        relaxation           = find_relaxation();
+        const auto *stresses = elements->beside().stresses;
+        if (stresses)
+          of_law.nearest = nearest_points(points, handler.get_fe().degree);
         solution.update_ghost_values();
         for (const auto &cell : handler.active_cell_iterators())
           if (cell->is_locally_owned())
             {
               values.reinit(cell);
               cell->get_dof_indices(indices);
+              of_law.points = stresses ? &stresses->points_of(cell, solution) : nullptr;
               for (const unsigned int q : values.quadrature_point_indices())
                 visit(values, q, indices, gradient_of(solution, values, q, indices));
             }
@@ -612,6 +644,57 @@ namespace PeriDeal
         return change;
       }
 
+      using LawPoint = typename StressCells<dim>::LawPoint;
+
+      /**
+       * Of a number that a law knows at points: means over the cells around each node, by their
+       * volumes, of its value at the point that is nearest to the node. (What follows from points
+       * that yield is not beyond the yield stress itself.)
+       */
+      template <typename Number>
+      std::vector<double> nodal_means(const Number &number) const
+      {
+        Vector sums(elements->node_layout()), volumes(elements->node_layout());
+        visit_cells(
+          Quadrature<dim>(handler.get_fe().get_unit_support_points()),
+          [&](const auto &values, const unsigned int q, const auto &indices, const auto &) {
+            if (elements->cut_cells()[values.get_cell()->active_cell_index()])
+              return;
+            const double size = values.get_cell()->measure();
+            sums(indices[q]) += size * number((*of_law.points)[of_law.nearest[q]]);
+            volumes(indices[q]) += size;
+          });
+        sums.compress(VectorOperation::add);
+        volumes.compress(VectorOperation::add);
+        std::vector<double> means(sums.locally_owned_size(), 0.);
+        for (unsigned int i = 0; i < means.size(); ++i)
+          if (volumes.local_element(i) > 0.)
+            means[i] = sums.local_element(i) / volumes.local_element(i);
+        return means;
+      }
+
+      /** The stress of a law, between its nodal means. Empty: there is none. Collective. */
+      std::vector<SymmetricTensor<2, 3>> stresses_by_law(const PointEvaluator<dim> &reader) const
+      {
+        std::vector<SymmetricTensor<2, 3>> stresses;
+        if (elements->beside().stresses == nullptr)
+          return stresses;
+        std::vector<SymmetricTensor<2, 3>>   means;
+        std::vector<SymmetricTensor<2, dim>> strains;
+        find_nodal_tensors(means, strains);
+        Vector component(elements->node_layout());
+        for (unsigned int k = 0; k < SymmetricTensor<2, 3>::n_independent_components; ++k)
+          {
+            for (unsigned int i = 0; i < means.size(); ++i)
+              component.local_element(i) = means[i].access_raw_entry(k);
+            const std::vector<double> values = reader.evaluate(component);
+            stresses.resize(values.size());
+            for (std::size_t p = 0; p < values.size(); ++p)
+              stresses[p].access_raw_entry(k) = values[p];
+          }
+        return stresses;
+      }
+
       /** The stress in a cell, with the material at p and the temperature at the point q. */
       SymmetricTensor<2, 3> stress_at(const FEValues<dim>                        &values,
                                       const unsigned int                          q,
@@ -619,6 +702,8 @@ namespace PeriDeal
                                       const Tensor<2, dim>                       &gradient,
                                       const Point<dim>                           &p) const
       {
+        if (of_law.points != nullptr)
+          return (*of_law.points)[of_law.nearest[q]].response.stress;
         const Vector &at_nodes = elements->temperature_change();
         const double  change = at_nodes.size() == 0 ? scene.elasticity.temperature_change.value(p) :
                                                       value_at(values, q, indices, at_nodes);
@@ -679,6 +764,15 @@ namespace PeriDeal
       const ModelKind                       model;
       std::unique_ptr<ElasticElements<dim>> elements;
       mutable Vector                        relaxation; // while cells are visited
+
+      /** Of a law of stresses, while cells are visited. */
+      struct OfLaw
+      {
+        const std::vector<typename StressCells<dim>::LawPoint> *points = nullptr;
+
+        std::vector<unsigned int> nearest; // to those that are visited
+      };
+      mutable OfLaw of_law;
     };
   } // namespace
 

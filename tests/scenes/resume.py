@@ -49,7 +49,7 @@ SCENES = {
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
                ("fracture/colliding_bars.prm", {}, 0), ("fracture/branching_crack.prm", {"Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}, IMPLICIT),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
-    "loading": [("elasticity/creeping_plate.prm", {"Domain/Cells": "16, 8", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("fracture/following_zone.prm", {"Domain/Cells": "17, 25", "Solver/Tolerance": "1e-13"}, IMPLICIT),
+    "loading": [("elasticity/yielding_ring.prm", {"Domain/Refinements": "2", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/creeping_plate.prm", {"Domain/Cells": "16, 8", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("fracture/following_zone.prm", {"Domain/Cells": "17, 25", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("fracture/blended_zone.prm", {"Domain/Cells": "25, 37", "Solver/Tolerance": "1e-13", "Time/Time step": "0.05", "Time/End time": "0.5"}, IMPLICIT),
                 ("fracture/centre_crack.prm", {"Domain/Cells": "20, 40", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {"Domain/Cells": "12, 48"}, IMPLICIT),
                 ("elasticity/heat_of_deformation.prm", {"Domain/Cells": "12, 12", "Time/End time": "1", "Output/Write at": "0.1"}, IMPLICIT),

@@ -243,6 +243,25 @@ Material/Law=formula & Material/Bond force=s & Models=finite elements & Elastici
   }
 
 
+  TEST(SceneMistakes, of_elements_that_yield)
+  {
+    expect_said(elastic_and({"Models=finite elements",
+                             "Material/Law=plastic",
+                             "Material/Yield stress=1",
+                             "Elasticity/Solver=newton"}),
+                R"(
+Material/Yield stress= => 'Yield stress' | is empty
+Material/Yield stress=0 => 'Yield stress' | greater than 0
+Material/Hardening modulus=-1 => 'Hardening modulus' | -1 | 0 or more
+Material/Law=linear => 'Yield stress' | 'Law = plastic' | 'linear'
+Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'plastic' | 'Temperature change'
+Material/Fracture energy=1 => 'Law' | 'Fracture energy'
+Elasticity/Solver=linear => 'Solver' | 'linear' | 'newton'
+Models=coupled & Coupling/Zone=everywhere => 'Law' | 'coupled'
+)");
+  }
+
+
   TEST(SceneMistakes, of_bonds_that_break)
   {
     expect_said(elastic_and({"Models=peridynamics", "Material/Fracture energy=1"}), R"(

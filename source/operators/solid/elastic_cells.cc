@@ -67,6 +67,7 @@ namespace PeriDeal
                  body.cuts_in_part_at_tips(),
                  bonds && body.coupling.zone != ZoneKind::formula &&
                    body.coupling.zone != ZoneKind::adaptive})
+    , stresses(StressCells<dim>::of_scene(dofs, body, by_cracks))
     , dofs(dofs)
     , body(body)
     , bonds(bonds)
@@ -144,6 +145,8 @@ namespace PeriDeal
               }
           }
       }
+    if (stresses)
+      stresses->find_stiffness(cell, data.stiffness);
   }
 
 

@@ -19,10 +19,10 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "inversion.h"
 #include "loose_nodes.h"
+#include "nodes_on_sides.h"
 #include "with_ghosts.h"
 
 namespace PeriDeal
@@ -31,43 +31,6 @@ namespace PeriDeal
 
   namespace
   {
-    /** Owned nodes on sides and their parts, each once, but for those that hang. */
-    template <int dim>
-    std::vector<NodeOnSide<dim>> nodes_on_sides(const DoFHandler<dim>             &dofs,
-                                                const Utilities::MPI::Partitioner &nodes,
-                                                const HangingNodes<dim>           &hanging,
-                                                const std::vector<Point<dim>>     &positions,
-                                                const std::vector<Part>           &parts)
-    {
-      const auto                                           &fe = dofs.get_fe();
-      std::vector<types::global_dof_index>                  indices(fe.n_dofs_per_cell());
-      std::set<std::pair<types::boundary_id, unsigned int>> seen;
-      std::vector<NodeOnSide<dim>>                          list;
-      for (const auto &cell : dofs.active_cell_iterators())
-        {
-          if (cell->is_artificial() || !cell->at_boundary())
-            continue;
-          cell->get_dof_indices(indices);
-          for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary())
-              for (unsigned int i = 0; i < indices.size(); ++i)
-                if (fe.has_support_on_face(i, f) && nodes.in_local_range(indices[i]) &&
-                    !hanging.is_hanging(dim * indices[i]))
-                  {
-                    const types::boundary_id side = cell->face(f)->boundary_id();
-                    const unsigned int       node = nodes.global_to_local(indices[i]);
-                    if (seen.insert({side, node}).second)
-                      list.push_back({node, side, positions[node]});
-                    for (const Part &part : parts)
-                      if (part.side == side && part.holds(positions[node]) &&
-                          seen.insert({part.id, node}).second)
-                        list.push_back({node, part.id, positions[node]});
-                  }
-        }
-      return list;
-    }
-
-
     template <int dim>
     void set_all(ZoneBonds<dim> &bonds, const unsigned int n_owned, const CrackSideFactors &factors)
     {
@@ -131,7 +94,7 @@ namespace PeriDeal
       return hanging.is_hanging(unknown);
     })
   {
-    if (body.material.law.kind != SolidLaw::linear)
+    if (body.material.law.kind != SolidLaw::linear && !cells.stresses)
       {
         Vector layout(unknowns);
         law = std::make_unique<Law>(Law{NodalLaw(body.material.law, layout), {}, layout, layout});
@@ -576,11 +539,14 @@ namespace PeriDeal
                                             const NodeKeys              &keys,
                                             const std::function<void()> &at_surrogate)
   {
-    if (law)
+    if (nonlinear() || law)
       {
         const Archive::Part part(archive, "law");
         archive.exchange("dissipated", this->released_beside.by_law);
-        law->nodal.exchange(archive, keys);
+        if (law)
+          law->nodal.exchange(archive, keys);
+        else
+          cells.stresses->exchange(archive);
       }
     if (!breaking)
       return;
@@ -670,6 +636,11 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::find_forces(Vector &y, const Vector &u, const double t) const
   {
+    if (cells.stresses)
+      {
+        const WithGhosts ghosts(u);
+        return cells.stresses->find_forces(y, hanging, u);
+      }
     if (!law)
       return multiply(y, u);
     law->nodal.steps.set_time(t);
@@ -691,10 +662,18 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::linearize(const Vector &u)
   {
-    if (!nonlinear() || !breaking)
+    if (!nonlinear())
       return;
     const WithGhosts ghosts(u);
-    breaking->bonds.linearize(u);
+    if (breaking)
+      breaking->bonds.linearize(u);
+    // Explicit steps, and the start of a motion, have the body in view that does not flow.
+    if (!cells.stresses || this->forgoes_diagonal ||
+        (!body.elasticity.is_static() && !cells.stresses->has_begun()))
+      return;
+    stiffness.sparse() = 0.;
+    cells.stresses->add_tangent(stiffness, hanging, u);
+    stiffness.compress();
   }
 
 
@@ -711,10 +690,19 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::accept(const Vector &u, const double t)
   {
+    if (!cells.stresses && !law)
+      return;
+    const WithGhosts ghosts(u);
+    if (cells.stresses)
+      {
+        const double dissipated = cells.stresses->accept(u);
+        this->released_beside.by_law += dissipated;
+        if (dissipated > 0. && body.elasticity.is_static()) // as for a run that goes on from here
+          linearize(u);
+      }
     if (!law)
       return;
     law->nodal.steps.set_time(t);
-    const WithGhosts ghosts(u);
     if (cells.with_shear) // else there is no history
       {
         const double of_bonds =
@@ -730,6 +718,11 @@ namespace PeriDeal
   template <int dim>
   double ElasticElements<dim>::energy(const Vector &u) const
   {
+    if (cells.stresses)
+      {
+        const WithGhosts ghosts(u);
+        return cells.stresses->energy(u) + contact->energy(u);
+      }
     Vector image;
     this->initialize_vector(image);
     if (!law)
@@ -789,7 +782,16 @@ namespace PeriDeal
   {
     if (!breaking)
       {
-        stiffness.copy_to(matrix, pattern(!breaking, true));
+        if (cells.stresses)
+          {
+            matrix.reinit(pattern(true, true));
+            cells.for_each([&](const Cell &, const auto &data) {
+              hanging.add_to(matrix, data.stiffness, data.unknowns);
+            });
+            matrix.compress(VectorOperation::add);
+          }
+        else
+          stiffness.copy_to(matrix, pattern(true, true));
         hold_unknowns(matrix, this->held_unknowns());
         return;
       }

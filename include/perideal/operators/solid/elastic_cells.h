@@ -12,6 +12,7 @@
 #include <perideal/operators/parts/crack_side_factors.h>
 #include <perideal/operators/parts/cut_cells.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
+#include <perideal/operators/solid/stress_cells.h>
 #include <perideal/scene/body_parameters.h>
 
 #include <memory>
@@ -25,7 +26,8 @@ namespace PeriDeal
    * strain, in 1D with Young's modulus, and what a coupling and cracks leave of it. Material and
    * thermal strain are those at quadrature points, a temperature at nodes is interpolated there.
    * The thermal strain alpha dT (in plane strain (1 + nu) alpha dT) makes the load
-   * int grad_a (dim lambda + 2 mu) alpha dT.
+   * int grad_a (dim lambda + 2 mu) alpha dT. With a law of stresses (StressCells) K_ab is its
+   * tangent before anything has happened.
    *
    * Cells that a crack cuts carry nothing (`Mesh = removed`), unless the crack is cut into the
    * mesh. Beside cracks they have the mean of the crack-side factors of their vertices. Not
@@ -138,6 +140,8 @@ namespace PeriDeal
 
     CutCells<dim>    by_cracks;
     CrackSideFactors factors; // empty: none
+
+    const std::unique_ptr<StressCells<dim>> stresses; // null: the linear law
 
   private:
     void assemble(const Cell &cell) const;

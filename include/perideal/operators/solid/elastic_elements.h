@@ -35,6 +35,9 @@ namespace PeriDeal
    * it relaxes the shear of the cells does: with S the part of K that the shear modulus multiplies,
    * F = K u + S (u* - u), u* what the law makes of the displacements.
    *
+   * With a law of stresses at quadrature points (StressCells) forces and energies are those of the
+   * law, and K is its tangent; preconditioners are made for the one before anything has happened.
+   *
    * Where explicit steps follow rows of the matrix share their values (ElementMatrix).
    *
    * Crack-side scaling: at nodes with broken bonds and on cut cells g_i = V_i C_abab/(-(1/2) sum_j
@@ -78,7 +81,7 @@ namespace PeriDeal
 
     bool nonlinear() const override
     {
-      return law && !law->nodal.steps->is_linear();
+      return cells.stresses || (law && !law->nodal.steps->is_linear());
     }
 
     void   linearize(const Vector &u) override;
@@ -108,17 +111,18 @@ namespace PeriDeal
                         std::pair<unsigned long long, std::string>();
     }
 
-    /** Null: no bonds may break; none has another law than the linear one. */
+    /** Null: no bonds may break; none, or no cell, has another law than the linear one. */
     struct Beside
     {
       const ZoneBreaking<dim> *breaking;
       const NodalLaw          *law;
+      const StressCells<dim>  *stresses;
     };
 
     /** Not collective. */
     Beside beside() const
     {
-      return {breaking.get(), law ? &law->nodal : nullptr};
+      return {breaking.get(), law ? &law->nodal : nullptr, cells.stresses.get()};
     }
 
     ForceBalance forces(const Vector &u, const double t) const override;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <perideal/scene/choices.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** What a law of stresses knows of the body around a point. */
+  enum class StressState
+  {
+    three_dimensional, // plane strain is that, with strains out of the plane that are known
+    plane_stress       // the stress out of the plane is zero, the strain follows
+  };
+
+
+  /** Of a body in two or three dimensions. */
+  inline StressState stress_state_of(const unsigned int dim, const PlaneState plane)
+  {
+    return dim == 2 && plane == PlaneState::stress ? StressState::plane_stress :
+                                                     StressState::three_dimensional;
+  }
+
+
+  /**
+   * A law that makes a stress of a small strain and of what the point went through: at quadrature
+   * points of finite elements, or wherever else a strain is known. Tensors are three-dimensional in
+   * all dimensions. Of a point a law gets some parameters, which may differ from point to point,
+   * and its state: numbers of the law as they were when the last step was accepted. It owns none of
+   * them, so that a step that is given up leaves nothing behind.
+   */
+  class StressLaw
+  {
+  public:
+    using Tensor  = dealii::SymmetricTensor<2, 3>;
+    using Tangent = dealii::SymmetricTensor<4, 3>;
+
+    /** Per volume. */
+    struct Response
+    {
+      Tensor stress;
+      double stored     = 0.; // energy now
+      double dissipated = 0.; // since the state that was accepted
+    };
+
+    virtual ~StressLaw() = default;
+
+    virtual unsigned int n_parameters() const = 0;
+
+    /** The numbers of a state, which are 0 before anything has happened. */
+    virtual unsigned int n_state() const = 0;
+
+    /**
+     * The response to a strain that is reached straight from the accepted one. The stress is the
+     * derivative of what is stored and dissipated by the strain.
+     *
+     * @param strain  in plane stress what it has out of the plane is not looked at
+     * @param state   the accepted one
+     * @param next    what it becomes if this strain is accepted; another place than @p state
+     * @param tangent the derivative of the stress by the strain; null: not wanted
+     */
+    virtual Response update(const Tensor &strain,
+                            const double *parameters,
+                            const double *state,
+                            double       *next,
+                            Tangent      *tangent) const = 0;
+
+    /** Numbers of the state that results show, by the name of their field. */
+    virtual std::vector<std::pair<std::string, unsigned int>> shown() const
+    {
+      return {};
+    }
+  };
+} // namespace PeriDeal

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/archive.h>
+#include <perideal/laws/stress_law.h>
+#include <perideal/operators/parts/cut_cells.h>
+#include <perideal/operators/parts/element_matrix.h>
+#include <perideal/operators/solid/projected_strains.h>
+#include <perideal/scene/body_parameters.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  /**
+   * The cells of finite elements Qp of a body with a law of stresses, one at a time: what the law
+   * makes of the strains at quadrature points (ProjectedStrains), and the states of these, which
+   * are those of the last step that was accepted. Ghosts of displacements are up to date. Cells
+   * that a crack cuts carry what it leaves of them. Not collective unless stated.
+   */
+  template <int dim>
+  class StressCells
+  {
+  public:
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+
+    /** A quadrature point in the cell that is looked at. */
+    struct LawPoint
+    {
+      double              weight = 0.; // volume, as far as cracks leave it
+      StressLaw::Response response;
+      std::vector<double> state; // next one
+      StressLaw::Tangent  tangent;
+    };
+
+    /** The law of the scene; null: it has none for stresses. */
+    static std::unique_ptr<StressCells> of_scene(const dealii::DoFHandler<dim> &dofs,
+                                                 const BodyParameters<dim>     &body,
+                                                 const CutCells<dim>           &cracks);
+
+    /** The parameters of the law at a place. */
+    using Parameters = std::function<std::vector<double>(const dealii::Point<dim> &)>;
+
+    /**
+     * @param projects the dilatation (ProjectedStrains)
+     * @param cracks   like @p dofs to outlive this
+     */
+    StressCells(const dealii::DoFHandler<dim>   &dofs,
+                std::unique_ptr<const StressLaw> law,
+                const Parameters                &parameters,
+                const bool                       projects,
+                const CutCells<dim>             &cracks);
+
+    const StressLaw &law() const
+    {
+      return *of_points;
+    }
+
+    /** The points of an own cell in the state u, until the next call. */
+    const std::vector<LawPoint> &points_of(const Cell &cell, const Vector &u) const;
+
+    /** Call visit(cell, points) for all own cells. */
+    template <typename Visit>
+    void for_each(const Vector &u, const Visit &visit) const
+    {
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          visit(cell, points_of(cell, u));
+    }
+
+    /** The tangent of a whole cell before anything has happened, or of what is left of it at u. */
+    void find_stiffness(const Cell                 &cell,
+                        dealii::FullMatrix<double> &matrix,
+                        const Vector               *u = nullptr) const;
+
+    /** Add the tangents of own cells at u. */
+    void add_tangent(ElementMatrix<dim, dim> &matrix,
+                     const HangingNodes<dim> &hanging,
+                     const Vector            &u) const;
+
+    /** Forces of all cells, zero on hanging nodes. Collective. */
+    void find_forces(Vector &y, const HangingNodes<dim> &hanging, const Vector &u) const;
+
+    /** Stored by all cells. Collective. */
+    double energy(const Vector &u) const;
+
+    /** A state has been accepted. */
+    bool has_begun() const
+    {
+      return begun;
+    }
+
+    /** The state u is accepted. Returns what was dissipated on the way to it. Collective. */
+    double accept(const Vector &u);
+
+    /** Collective. */
+    void exchange(Archive &archive);
+
+  private:
+    /** Number of the first point of an own cell. */
+    std::size_t first_of(const Cell &cell) const
+    {
+      return first[cell->active_cell_index()];
+    }
+
+    /** @param u null: at zero. @param accepted states of the points of the cell */
+    void look_at(const Cell   &cell,
+                 const Vector *u,
+                 const double *accepted,
+                 const bool    with_tangents) const;
+
+    const dealii::DoFHandler<dim>         &dofs;
+    const std::unique_ptr<const StressLaw> of_points;
+    const CutCells<dim>                   &cracks;
+    std::vector<std::size_t>               first; // by active cell index
+    std::vector<double>                    all_parameters, states;
+    bool                                   begun = false;
+
+    /** The cell that is looked at. */
+    struct Looked
+    {
+      ProjectedStrains<dim>                        strains;
+      std::vector<dealii::types::global_dof_index> nodes;
+      dealii::Vector<double>                       u;
+      std::vector<LawPoint>                        points;
+    };
+    mutable Looked at;
+  };
+} // namespace PeriDeal

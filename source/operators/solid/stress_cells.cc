@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <deal.II/fe/fe_dgq.h>
+
+#include <perideal/base/instantiate.h>
+#include <perideal/base/interleaved.h>
+#include <perideal/laws/j2_plasticity.h>
+#include <perideal/mesh/node_keys.h>
+#include <perideal/operators/solid/stress_cells.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  template <int dim>
+  std::unique_ptr<StressCells<dim>> StressCells<dim>::of_scene(const DoFHandler<dim>     &dofs,
+                                                               const BodyParameters<dim> &body,
+                                                               const CutCells<dim>       &cracks)
+  {
+    const Material &material = body.material;
+    if (!material.law.yields())
+      return nullptr;
+    const StressState kind       = stress_state_of(dim, body.elasticity.plane);
+    auto              law        = std::make_unique<const J2Plasticity>(kind);
+    const auto        parameters = [&material, &law = *law](const Point<dim> &p) {
+      return law.parameters(material.moduli(p),
+                            material.law.yield_stress->value(p),
+                            material.law.hardening.value(p));
+    };
+    return std::make_unique<StressCells>(dofs,
+                                         std::move(law),
+                                         parameters,
+                                         kind != StressState::plane_stress,
+                                         cracks);
+  }
+
+
+  template <int dim>
+  StressCells<dim>::StressCells(const DoFHandler<dim>           &dofs,
+                                std::unique_ptr<const StressLaw> law,
+                                const Parameters                &parameters,
+                                const bool                       projects,
+                                const CutCells<dim>             &cracks)
+    : dofs(dofs)
+    , of_points(std::move(law))
+    , cracks(cracks)
+    , first(dofs.get_triangulation().n_active_cells(), 0)
+    , at{ProjectedStrains<dim>(dofs.get_fe(), projects),
+         std::vector<types::global_dof_index>(dofs.get_fe().n_dofs_per_cell()),
+         dealii::Vector<double>(dim * dofs.get_fe().n_dofs_per_cell()),
+         {}}
+  {
+    at.points.resize(at.strains.values().n_quadrature_points);
+    for (LawPoint &point : at.points)
+      point.state.resize(of_points->n_state());
+    std::size_t n_points = 0;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          first[cell->active_cell_index()] = n_points;
+          n_points += at.points.size();
+          at.strains.reinit(cell);
+          for (const auto &place : at.strains.values().get_quadrature_points())
+            {
+              const std::vector<double> of_point = parameters(place);
+              all_parameters.insert(all_parameters.end(), of_point.begin(), of_point.end());
+            }
+        }
+    states.resize(n_points * of_points->n_state(), 0.);
+  }
+
+
+  template <int dim>
+  void StressCells<dim>::look_at(const Cell   &cell,
+                                 const Vector *u,
+                                 const double *accepted,
+                                 const bool    with_tangents) const
+  {
+    at.strains.reinit(cell);
+    cell->get_dof_indices(at.nodes);
+    at.u = 0.;
+    for (unsigned int i = 0; u != nullptr && i < at.u.size(); ++i)
+      at.u(i) = (*u)(dim * at.nodes[i / dim] + i % dim);
+    const double *of_point = all_parameters.data() + first_of(cell) * of_points->n_parameters();
+    for (unsigned int q = 0; q < at.points.size(); ++q)
+      {
+        LawPoint &point = at.points[q];
+        point.weight =
+          (u == nullptr ? 1. : cracks.kept_of_removed(cell)) * at.strains.values().JxW(q);
+        point.response = of_points->update(at.strains.strain(q, at.u),
+                                           of_point + q * of_points->n_parameters(),
+                                           accepted + q * of_points->n_state(),
+                                           point.state.data(),
+                                           with_tangents ? &point.tangent : nullptr);
+      }
+  }
+
+
+  template <int dim>
+  const std::vector<typename StressCells<dim>::LawPoint>
+    &StressCells<dim>::points_of(const Cell &cell, const Vector &u) const
+  {
+    look_at(cell, &u, states.data() + first_of(cell) * of_points->n_state(), false);
+    return at.points;
+  }
+
+
+  template <int dim>
+  void StressCells<dim>::find_stiffness(const Cell         &cell,
+                                        FullMatrix<double> &matrix,
+                                        const Vector       *u) const
+  {
+    using Strain                   = StressLaw::Tensor;
+    constexpr unsigned int n_parts = Strain::n_independent_components;
+    const unsigned int     n       = at.u.size();
+    if (u != nullptr)
+      look_at(cell, u, states.data() + first_of(cell) * of_points->n_state(), true);
+    else
+      look_at(cell,
+              nullptr,
+              std::vector<double>(at.points.size() * of_points->n_state(), 0.).data(),
+              true);
+    matrix.reinit(n, n);
+    FullMatrix<double> strains(n, n_parts), stresses(n, n_parts);
+    for (unsigned int q = 0; q < at.points.size(); ++q)
+      {
+        const LawPoint &point = at.points[q];
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const Strain strain = at.strains.of_unknown(i / dim, i % dim, q);
+            const Strain stress = point.weight * (point.tangent * strain);
+            for (unsigned int k = 0; k < n_parts; ++k)
+              {
+                // Entries beside the diagonal stand for two.
+                strains(i, k)  = (k < 3 ? 1. : 2.) * strain.access_raw_entry(k);
+                stresses(i, k) = stress.access_raw_entry(k);
+              }
+          }
+        strains.mTmult(matrix, stresses, true);
+      }
+  }
+
+
+  template <int dim>
+  void StressCells<dim>::add_tangent(ElementMatrix<dim, dim> &matrix,
+                                     const HangingNodes<dim> &hanging,
+                                     const Vector            &u) const
+  {
+    std::vector<types::global_dof_index> unknowns(at.u.size());
+    FullMatrix<double>                   of_cell;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          find_stiffness(cell, of_cell, &u);
+          for (unsigned int i = 0; i < unknowns.size(); ++i)
+            unknowns[i] = dim * at.nodes[i / dim] + i % dim;
+          matrix.add(hanging, of_cell, unknowns);
+        }
+  }
+
+
+  template <int dim>
+  void StressCells<dim>::find_forces(Vector                  &y,
+                                     const HangingNodes<dim> &hanging,
+                                     const Vector            &u) const
+  {
+    std::vector<Tensor<1, dim>> forces(at.nodes.size());
+    y = 0.;
+    for_each(u, [&](const Cell &, const std::vector<LawPoint> &points) {
+      std::fill(forces.begin(), forces.end(), Tensor<1, dim>());
+      for (unsigned int q = 0; q < points.size(); ++q)
+        for (unsigned int a = 0; a < forces.size(); ++a)
+          forces[a] += points[q].weight * at.strains.force(a, q, points[q].response.stress);
+      for (unsigned int a = 0; a < forces.size(); ++a)
+        for (unsigned int d = 0; d < dim; ++d)
+          y(dim * at.nodes[a] + d) += forces[a][d];
+    });
+    y.compress(VectorOperation::add);
+    hanging.condense(y);
+    hanging.set(y, 0.);
+  }
+
+
+  template <int dim>
+  double StressCells<dim>::energy(const Vector &u) const
+  {
+    double sum = 0.;
+    for_each(u, [&](const Cell &, const std::vector<LawPoint> &points) {
+      for (const LawPoint &point : points)
+        sum += point.weight * point.response.stored;
+    });
+    return Utilities::MPI::sum(sum, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  double StressCells<dim>::accept(const Vector &u)
+  {
+    double dissipated = 0.;
+    begun             = true;
+    for_each(u, [&](const Cell &cell, const std::vector<LawPoint> &points) {
+      auto next = states.begin() + first_of(cell) * of_points->n_state();
+      for (const LawPoint &point : points)
+        {
+          dissipated += point.weight * point.response.dissipated;
+          next = std::copy(point.state.begin(), point.state.end(), next);
+        }
+    });
+    return Utilities::MPI::sum(dissipated, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  void StressCells<dim>::exchange(Archive &archive)
+  {
+    // Cells have keys by the one node that such an element has in each.
+    DoFHandler<dim>                      cells(dofs.get_triangulation());
+    const FE_DGQ<dim>                    middle(0);
+    const unsigned int                   n_values = at.points.size() * of_points->n_state();
+    std::vector<types::global_dof_index> node(1);
+    cells.distribute_dofs(middle);
+    const Utilities::MPI::Partitioner layout(cells.locally_owned_dofs(), cells.get_communicator());
+    dealii::LinearAlgebra::distributed::Vector<double> values(interleaved(layout, n_values));
+    const auto                                         for_each_cell = [&](const auto &act) {
+      for (const auto &cell : cells.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            cell->get_dof_indices(node);
+            act(values.begin() + n_values * layout.global_to_local(node[0]),
+                states.begin() + first[cell->active_cell_index()] * of_points->n_state());
+          }
+    };
+    archive.exchange("begun", begun);
+    for_each_cell([&](auto value, auto state) { std::copy_n(state, n_values, value); });
+    archive.exchange("states of points", values, node_keys(cells));
+    for_each_cell([&](auto value, auto state) { std::copy_n(value, n_values, state); });
+  }
+
+
+  PERIDEAL_INSTANTIATE_CLASS(class StressCells);
+} // namespace PeriDeal
