@@ -176,6 +176,35 @@ namespace PeriDeal
     using Place = std::pair<typename DoFHandler<dim>::active_cell_iterator, Point<dim>>;
 
 
+    /** In coordinates of the unit cell; of a parallelepiped at once, which most cells are. */
+    template <int dim>
+    Point<dim> to_unit_cell(const MappingQ1<dim>                 &mapping,
+                            const typename CellSearch<dim>::Cell &cell,
+                            const Point<dim>                     &point)
+    {
+      constexpr double slack = 1e-12; // of its size
+      Tensor<2, dim>   edges;
+      const Point<dim> first = cell->vertex(0);
+      double           size = 0., askew = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const Tensor<1, dim> edge = cell->vertex(1u << d) - first;
+          size += edge.norm();
+          for (unsigned int c = 0; c < dim; ++c)
+            edges[c][d] = edge[c];
+        }
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          Tensor<1, dim> corner;
+          for (unsigned int d = 0; d < dim; ++d)
+            corner[d] = (v >> d) & 1;
+          askew += (first + edges * corner - cell->vertex(v)).norm();
+        }
+      return askew < slack * size ? Point<dim>(invert(edges) * (point - first)) :
+                                    mapping.transform_real_to_unit_cell(cell, point);
+    }
+
+
     /**
      * The first of this process's cells that hold the point and whose centre lies the given way, if
      * any: the cells on both sides of a crack on faces hold what lies on it. Returns 0; 1 if there
@@ -197,7 +226,7 @@ namespace PeriDeal
         if (cell->is_locally_owned())
           try
             {
-              const Point<dim> unit = mapping.transform_real_to_unit_cell(cell, point);
+              const Point<dim> unit = to_unit_cell(mapping, cell, point);
               const double     rank = way * (cell->center() - point) < 0. ? 1. : 0.;
               if (GeometryInfo<dim>::is_inside_unit_cell(unit, slack) && rank < least)
                 {

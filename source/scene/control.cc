@@ -335,6 +335,9 @@ namespace PeriDeal
       "no limit.";
     declare("Memory", EntryType::text) =
       "Memory that may be taken, with its unit (4 GB). Empty: what the machine has free.";
+    declare("Guaranteed energy", EntryType::boolean, "false") =
+      "Bound the error in the energy norm besides, with any `Measure`: of elastic bodies at rest in the plane, by finite elements (`guaranteed` in `summary.json`). "
+      "It takes several times as long as the solution.";
     parse();
   }
 

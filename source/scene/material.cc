@@ -449,19 +449,20 @@ namespace PeriDeal
     for (const double value : {value_a, second_is_poisson ? 1. : value_b})
       if (!(value > 0.))
         return "found " + number_text(value) + ", needs a value greater than 0.";
-    const double      poisson = poisson_from(which[0], value_a, which[1], value_b);
-    const std::string found   = second_is_poisson ?
-                                  "found " + number_text(value_b) + ", which" :
-                                  name_of(which[0]) + " " + number_text(value_a) + " and " +
-                                  name_of(which[1]) + " " + number_text(value_b) +
-                                  " contradict each other: the Poisson ratio would be " +
-                                  number_text(poisson) + ", and it";
+    const double poisson = poisson_from(which[0], value_a, which[1], value_b);
+    const auto   found   = [&] { // only where it is told: this is asked at each point of a formula
+      return second_is_poisson ?
+                   "found " + number_text(value_b) + ", which" :
+                   name_of(which[0]) + " " + number_text(value_a) + " and " + name_of(which[1]) + " " +
+                 number_text(value_b) + " contradict each other: the Poisson ratio would be " +
+                 number_text(poisson) + ", and it";
+    };
     if (!(poisson > -1. && (may_be_incompressible ? poisson <= 0.5 : poisson < 0.5)))
-      return found + " has to be greater than -1 and " +
+      return found() + " has to be greater than -1 and " +
              (may_be_incompressible ? "at most 0.5." : "less than 0.5.");
     const Moduli moduli = moduli_from(which[0], value_a, which[1], value_b);
     if (!(moduli.shear > 0.))
-      return found + " leaves no shear modulus; give 'Young modulus' with it, or less than 0.5.";
+      return found() + " leaves no shear modulus; give 'Young modulus' with it, or less than 0.5.";
     return "";
   }
 

@@ -69,7 +69,8 @@ namespace PeriDeal
       }
     if (family == Family::faces)
       faces_unit = fineness_of(*on_faces(1.));
-    const CellCounts cells = family == Family::faces ? *on_faces(coarsest()) : counts(coarsest());
+    const double     wanted = coarsest();
+    const CellCounts cells  = family == Family::faces ? *on_faces(wanted) : counts(wanted);
     // All directions get finer from the first mesh on, however cracks or points fit into it.
     if (family != Family::whole && family != Family::bonds)
       first.assign(cells.begin(), cells.end());
@@ -156,9 +157,9 @@ namespace PeriDeal
         const double n = std::max(fineness * (box.upper[d] - box.lower[d]) / longest,
                                   (first.empty() ? 2. : first[d]) * std::max(1., ratio));
         // Few cells get more with the others, or nothing is seen of them.
-        constexpr double few = 8.;
+        constexpr double few = 8., part = 0.25;
         cells.push_back(
-          std::max<unsigned int>(2, std::lround(ratio > 1. && n < few ? std::ceil(n - 1e-9) : n)));
+          std::max<unsigned int>(2, std::lround(ratio > 1. && n < few ? std::ceil(n - part) : n)));
         if (family != Family::faces && family != Family::bonds)
           cells.back() = with_points_on_planes(d, cells.back());
       }
@@ -288,6 +289,92 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** Of a point and a segment. */
+    double distance(const std::vector<double>              &point,
+                    const std::vector<std::vector<double>> &segment)
+    {
+      double length = 0., along = 0., square = 0.;
+      for (std::size_t d = 0; d < point.size(); ++d)
+        {
+          const double edge = segment[1][d] - segment[0][d];
+          length += edge * edge;
+          along += edge * (point[d] - segment[0][d]);
+        }
+      const double share = length > 0. ? std::clamp(along / length, 0., 1.) : 0.;
+      for (std::size_t d = 0; d < point.size(); ++d)
+        square += std::pow(point[d] - segment[0][d] - share * (segment[1][d] - segment[0][d]), 2);
+      return std::sqrt(square);
+    }
+
+
+    bool is_inside(const CrackedBox &box, const std::vector<double> &point)
+    {
+      for (unsigned int d = 0; d < box.dim(); ++d)
+        if (point[d] < box.lower[d] || point[d] > box.upper[d])
+          return false;
+      return true;
+    }
+  } // namespace
+
+
+  namespace
+  {
+    /** How often cells are halved at ends of cracks and at corners. */
+    struct GradingAtEnds
+    {
+      /** Of a mesh so many times as fine as the coarsest one that could be. */
+      unsigned int halvings(const double refinement) const
+      {
+        const int full = PeriDeal::halvings(refinement, power),
+                  most = PeriDeal::halvings(first, power);
+        // The first mesh need not be finer there than the tolerance asks; others follow it.
+        return std::max(least, full - std::max(0, most - std::max(least, enough)));
+      }
+
+      double power = 3., first = 1.; // refinement of the first mesh
+      int    least = 0, enough = 0;  // halvings of the first mesh, for the tolerance
+    };
+
+
+    /**
+     * Where u goes with the root of r, or jumps, fields are wrong by about a fifth of the cells
+     * there; where with r^(2/3), by a tenth of their power 4/3; stress intensities by about a half
+     * of them, over the crack.
+     *
+     * @param first refinement of the first mesh
+     * @param size  of its cells far away
+     */
+    template <int dim>
+    GradingAtEnds grading_at_ends(const Scene<dim> &scene,
+                                  const CrackedBox &box,
+                                  const bool        disagree,
+                                  const double      first,
+                                  const double      size)
+    {
+      const double tolerance = scene.accuracy.tolerance;
+      double       length    = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        length = std::max(length, box.upper[d] - box.lower[d]);
+      double wanted = 4. * tolerance * length;
+      if (scene.accuracy.measure == AccuracyMeasure::stress_intensity)
+        for (const auto &crack : box.cracks)
+          length = std::min(length, distance(crack[0], {crack[1], crack[1]}));
+      if (scene.accuracy.measure != AccuracyMeasure::field)
+        wanted = tolerance * length;
+      else if (box.cracks.empty() && !disagree)
+        wanted = std::pow(8. * tolerance, 0.75) * length;
+      GradingAtEnds grading;
+      grading.power  = dim == 3 ? 2. : 3.;
+      grading.first  = first;
+      grading.least  = box.cracks.empty() ? 0 : 1;
+      grading.enough = static_cast<int>(std::ceil(std::log2(size / wanted) - 1e-9));
+      return grading;
+    }
+  } // namespace
+
+
   template <int dim>
   unsigned int Attempts<dim>::refinements(const double fineness) const
   {
@@ -318,9 +405,16 @@ namespace PeriDeal
     const bool         is_rough = body.given->has_corners || family == Family::given_pairs ||
                           !scene.cracks.cracks.empty();
     unsigned int levels = 0;
-    if (is_rough)
-      levels = halvings(std::exp2(n - refinements(coarsest())),
-                        family == Family::given_pairs || dim == 3 ? 2. : 3.);
+    const double times  = std::exp2(n - refinements(coarsest()));
+    if (is_rough && family == Family::given_pairs)
+      levels = halvings(times, 2.);
+    else if (is_rough)
+      levels = grading_at_ends(scene,
+                               box,
+                               needs.disagree,
+                               1.,
+                               body.given->spacing / std::exp2(refinements(coarsest())))
+                 .halvings(times);
     levels           = std::min(levels, most - n);
     attempt.fineness = std::exp2(n) * longest / body.given->spacing;
     if (family == Family::given_pairs)
@@ -337,8 +431,9 @@ namespace PeriDeal
   void Attempts<dim>::set_lines(const double fineness, Attempt &attempt) const
   {
     const auto n = static_cast<unsigned int>(std::max(1l, std::lround(fineness / first_fineness)));
-    const auto levels = std::to_string(halvings(n, dim == 3 ? 2. : 3.));
-    attempt.fineness  = n * first_fineness;
+    const auto levels = std::to_string(
+      grading_at_ends(scene, box, needs.disagree, 1., longest / first_fineness).halvings(n));
+    attempt.fineness = n * first_fineness;
     attempt.settings.emplace_back("Domain/Cell lines", to_text(divided(*lines, n)));
     attempt.settings.emplace_back("Domain/Refinements", levels);
     attempt.settings.emplace_back("Domain/Coarsening", levels);
@@ -358,7 +453,12 @@ namespace PeriDeal
     if (family == Family::faces)
       {
         cells  = *on_faces(fineness);
-        levels = halvings(fineness_of(cells) / faces_unit, dim == 3 ? 2. : 3.);
+        levels = grading_at_ends(scene,
+                                 box,
+                                 needs.disagree,
+                                 first_fineness / faces_unit,
+                                 longest / first_fineness)
+                   .halvings(fineness_of(cells) / faces_unit);
         attempt.settings.emplace_back("Domain/Fine where", "crack ends");
       }
     else if (family != Family::whole)
@@ -421,36 +521,6 @@ namespace PeriDeal
     set("Models", to_string(attempt.model));
     return attempt;
   }
-
-
-  namespace
-  {
-    /** Of a point and a segment. */
-    double distance(const std::vector<double>              &point,
-                    const std::vector<std::vector<double>> &segment)
-    {
-      double length = 0., along = 0., square = 0.;
-      for (std::size_t d = 0; d < point.size(); ++d)
-        {
-          const double edge = segment[1][d] - segment[0][d];
-          length += edge * edge;
-          along += edge * (point[d] - segment[0][d]);
-        }
-      const double share = length > 0. ? std::clamp(along / length, 0., 1.) : 0.;
-      for (std::size_t d = 0; d < point.size(); ++d)
-        square += std::pow(point[d] - segment[0][d] - share * (segment[1][d] - segment[0][d]), 2);
-      return std::sqrt(square);
-    }
-
-
-    bool is_inside(const CrackedBox &box, const std::vector<double> &point)
-    {
-      for (unsigned int d = 0; d < box.dim(); ++d)
-        if (point[d] < box.lower[d] || point[d] > box.upper[d])
-          return false;
-      return true;
-    }
-  } // namespace
 
 
   template <int dim>
@@ -630,6 +700,10 @@ namespace PeriDeal
     double least = std::max(fewest_cells<dim>, 0.25 * needs.fineness);
     if (is_given())
       least = std::max(least, longest / body.given->spacing);
+    // Not all lattices have the cracks on faces: the nearest one is taken, once and for all.
+    constexpr double near = 0.6;
+    if (family == Family::faces && !lines && first_fineness > near * least)
+      return first_fineness;
     if (family == Family::zone) // families need cells about as long as wide
       for (unsigned int d = 0; d < dim; ++d)
         least = std::max(least, 2. * longest / (box.upper[d] - box.lower[d]));

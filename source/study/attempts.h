@@ -114,10 +114,10 @@ namespace PeriDeal
       return family == Family::given || family == Family::given_pairs;
     }
 
-    /** A plate in 3D whose cells need not be halved: others are taken, not many times as many. */
+    /** A plate whose cells need not be halved: others are taken, not many times as many. */
     bool grows_by_cells() const
     {
-      return dim == 3 && family == Family::given && !body.settings.empty() &&
+      return dim > 1 && family == Family::given && !body.settings.empty() &&
              !body.given->has_corners && scene.cracks.cracks.empty();
     }
 

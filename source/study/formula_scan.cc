@@ -149,15 +149,20 @@ namespace PeriDeal
       /** Along all edges, or along one. */
       double fineness_needed(const unsigned int axis) const
       {
-        constexpr double allowed   = 0.2;
+        // Near a jump no interpolant is, and what jumps is seen by cells of about its width.
+        constexpr double allowed = 0.2, of_jumps = 0.3, many = 16.;
         const double     variation = this->variation();
         if (variation == 0.)
           return 1.;
         const double finest = cells / *std::min_element(edges.begin(), edges.end());
-        const double most   = allowed * allowed * variation;
+        double       most   = allowed * allowed * variation;
         for (double fineness = 1.; fineness < finest; fineness *= 2.)
-          if (squared_error(strides(fineness, axis), most) < most)
-            return fineness;
+          {
+            if (fineness == many && jumps())
+              most = of_jumps * of_jumps * variation;
+            if (squared_error(strides(fineness, axis), most) < most)
+              return fineness;
+          }
         return finest;
       }
 
@@ -245,7 +250,9 @@ namespace PeriDeal
         if (part.kind != Part::point)
           see([&](const Point<dim> &p, double) { return part.holds(p) ? 1. : 0.; },
               false,
-              holds_values(part.id) ? Jumps::matter : Jumps::do_not_matter,
+              // What enters in a region does so at its nodes, in more or less of it.
+              part.kind == Part::region || holds_values(part.id) ? Jumps::matter :
+                                                                   Jumps::do_not_matter,
               side_of(part.id));
       }
 

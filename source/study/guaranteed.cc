@@ -43,7 +43,8 @@ namespace PeriDeal
     else
       {
         auto *const problem = dynamic_cast<const SolidProblem<dim> *>(&simulation.problem());
-        if (problem == nullptr || scene.general.models.front() != ModelKind::finite_elements ||
+        if (problem == nullptr || scene.accuracy.text("Guaranteed energy") != "true" ||
+            scene.general.models.front() != ModelKind::finite_elements ||
             problem->heat != nullptr || !ElasticBounds<dim>::why_not(scene).empty())
           return {};
         auto *const op = dynamic_cast<const ElasticElements<dim> *>(&problem->op());

@@ -70,13 +70,21 @@ namespace PeriDeal
     template <int dim>
     Sample sample_of(const Triangulation<dim> &mesh, const double n)
     {
-      const double        cells = mesh.n_global_active_cells(), share = std::min(1., n / cells);
-      const unsigned int  n_points = static_cast<unsigned int>(std::ceil(n / cells));
+      const double cells    = mesh.n_global_active_cells();
+      double       at_sides = 0.;
+      for (const auto &cell : mesh.active_cell_iterators())
+        at_sides += cell->is_locally_owned() && cell->at_boundary() ? 1. : 0.;
+      at_sides = Utilities::MPI::sum(at_sides, mesh.get_communicator());
       std::vector<double> own;
       for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            Chance chance(cell->id().to_string());
+            // Where there are too many, those at sides are looked at first: layers are there, and
+            // solutions of a horizon jump.
+            const bool         at_side  = cells > n && cell->at_boundary();
+            const double       share    = std::min(1., n / (at_side ? at_sides : cells));
+            const unsigned int n_points = at_side && dim == 1 ? 8 : std::ceil(n / cells);
+            Chance             chance(cell->id().to_string());
             chance.next();
             if (chance.next() > share)
               continue;

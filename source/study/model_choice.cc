@@ -204,7 +204,7 @@ namespace PeriDeal
           classical.set(settings_in_time(tolerance));
           return classical.solve(classical.first());
         };
-        double             tolerance = std::min(1e-3, finer * scene.accuracy.tolerance);
+        double             tolerance = std::min(1e-2, scene.accuracy.tolerance);
         Tried<dim>         loose     = solution(tolerance);
         std::ostringstream what;
         what.precision(2);

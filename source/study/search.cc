@@ -64,14 +64,22 @@ namespace PeriDeal
     const double     farthest = dim == 3 ? 2. : 3.;
     const double     last     = latest.attempt.fineness;
     double           wanted   = family.first_ratio() * last;
-    if (n_compared() == 2)
+    if (few.predicted)
+      wanted = fineness_for({*few.predicted, family.best_order()},
+                            last,
+                            aim * tolerance,
+                            family.first_ratio());
+    else if (n_compared() == 2)
       wanted = fineness_for({largest_error(steps), now.order},
                             last,
                             aim * tolerance,
                             family.first_ratio());
     else if (n_compared() > 2 && now.error > tolerance)
       wanted = fineness_for(now, last, aim * tolerance, farthest);
-    const double     least   = 1.1 * last;
+    // Around cracks cells come in powers of two: one that is barely finer shows no order.
+    const bool   in_powers   = n_compared() == 2 && latest.attempt.model == ModelKind::coupled;
+    const double least       = (in_powers ? 1.5 : 1.1) * last;
+    wanted                   = std::max(wanted, least);
     Attempt          attempt = with_settings(wanted);
     constexpr double most    = 100.; // of a given mesh there may be no finer one
     for (double more = least; attempt.fineness < least && more < most * least; more *= 1.1)
@@ -115,7 +123,8 @@ namespace PeriDeal
   {
     Tried<dim> one = known ? std::move(*known) : solve(attempt);
     known.reset();
-    believed = false;
+    const OfFew before = std::move(few);
+    few                = {};
     std::optional<double> difference;
     if (n > 0)
       difference = measure.difference(one.solution(), latest.solution());
@@ -131,8 +140,18 @@ namespace PeriDeal
         careful * steps[1].difference <= scene.accuracy.tolerance)
       {
         now.error = steps[1].difference / std::min(1., steps[1].fineness / steps[0].fineness - 1.);
-        believed  = careful * now.error <= scene.accuracy.tolerance;
+        few.are_enough = careful * now.error <= scene.accuracy.tolerance;
       }
+    constexpr double part = 0.8;
+    if (steps.size() == 2 && !few.are_enough && !before.of_cubic.values.empty() &&
+        largest_error(steps) <= part * scene.accuracy.tolerance)
+      if (const auto d = measure.difference(
+            latest.solution(),
+            {*latest.simulation, latest.scene->cracks, before.of_cubic, latest.seen}))
+        {
+          now.error      = std::max(smallest_error(), *d);
+          few.are_enough = now.error <= scene.accuracy.tolerance;
+        }
   }
 
 
@@ -149,7 +168,7 @@ namespace PeriDeal
   {
     const bool knows = scene.accuracy.measure == AccuracyMeasure::probes ||
                        !latest.numbers.values.empty(); // else the mesh is too coarse
-    if (believed)
+    if (few.are_enough)
       return false;
     if (steps.size() == 1)
       return knows && !family.is_round() && family.best_order() >= 2. &&
@@ -185,11 +204,15 @@ namespace PeriDeal
     const double error = factor_of_cubic(scene) * *d;
     if (steps.size() == 2)
       now.error = std::max(smallest_error(), error);
-    else if (alone * error <= scene.accuracy.tolerance)
-      now.error = alone * error;
     else
-      return;
-    believed = true;
+      {
+        few.predicted = alone * error;
+        few.of_cubic  = richer.numbers;
+        if (*few.predicted > scene.accuracy.tolerance)
+          return;
+        now.error = *few.predicted;
+      }
+    few.are_enough = true;
   }
 
 
@@ -203,13 +226,22 @@ namespace PeriDeal
   template <int dim>
   bool Search<dim>::is_within(const double tolerance) const
   {
+    constexpr double half = 0.5;
     if (now.error < 0. || now.error > tolerance)
       return false;
-    if (steps.size() <= 2 && believed)
+    if (steps.size() <= 2 && few.are_enough)
       return true;
     if (steps.size() == 2)
-      return scene.accuracy.measure == AccuracyMeasure::field && family.best_order() > 1. &&
-             largest_error(steps) <= tolerance;
+      {
+        if (scene.accuracy.measure != AccuracyMeasure::field)
+          return false;
+        const double order = family.best_order();
+        // As if an order that comes unevenly were half of what it is.
+        return order > 1. ? largest_error(steps) <= tolerance :
+                            steps[1].difference <=
+                              half * tolerance *
+                                (std::pow(steps[1].fineness / steps[0].fineness, 0.5 * order) - 1.);
+      }
     // A low order is that of something rough, which comes unevenly.
     constexpr double rough = 0.7, careful = 0.8;
     const bool       is_uneven = family.best_order() <= 1.;

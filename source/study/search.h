@@ -107,9 +107,11 @@ namespace PeriDeal
      * Whether the error may be called smaller than a tolerance. An order is seen in three solutions
      * at least; a low one is not trusted as long as all are coarse, since it says more of the first
      * than of the last. Two are enough for a field where an order of 1.25 leaves their difference
-     * within the tolerance: at so many points it is not small by accident. For what cubic_attempt()
-     * is for one or two are where that has been solved on the mesh of the last, and two that agree
-     * within half of the tolerance.
+     * within the tolerance: at so many points it is not small by accident; where the order is known
+     * beforehand, since errors come unevenly, where half of it leaves half of the tolerance. For
+     * what cubic_attempt() is for one or two are where that has been solved on the mesh of the
+     * last, and two that agree within half of the tolerance, or about within it, where the second
+     * agrees with that on the mesh of the first, too.
      */
     bool is_within(const double tolerance) const;
 
@@ -133,6 +135,14 @@ namespace PeriDeal
     double expected_memory(const Attempt &attempt) const;
 
   private:
+    /** What cubic elements, or two that agree, say. */
+    struct OfFew
+    {
+      bool                  are_enough = false;
+      std::optional<double> predicted; // error of the first one, where that is too large
+      MeasuredNumbers       of_cubic;  // on its mesh
+    };
+
     Attempt with_settings(const double fineness) const;
     double  growth(const Attempt &attempt) const;
     double  smallest_error() const; // of the second one
@@ -148,6 +158,6 @@ namespace PeriDeal
     unsigned int                  n = 0;
     std::vector<ComparedSolution> steps;
     ObservedError                 now;
-    bool                          believed = false; // one solution or two are enough
+    OfFew                         few;
   };
 } // namespace PeriDeal
