@@ -42,8 +42,7 @@ namespace PeriDeal
     : SceneSection("Material")
   {
     const std::string two =
-      " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional "
-      "solid, also in 1D and 2D.";
+      " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
     const std::string formula = ": a number or a formula of x, y, z.";
     const auto        entry   = [&](const std::string &name,
                            const std::string &default_text = "") -> std::string          &{
@@ -52,20 +51,15 @@ namespace PeriDeal
     entry("Conductivity", "1") =
       "Thermal conductivity, diffusivity (moisture) or electrical conductivity: a number or a formula of x, y, z and T, the temperature (wetness, potential) itself.";
     entry("Diffusivity") =
-      "Moisture only, in place of Conductivity: D of the flux -D grad C of the concentration C = Saturated concentration x wetness in each material. "
-      "Conductivity is then Diffusivity x Saturated concentration, and the body stores Saturated concentration per wetness, so that flows and amounts are masses. "
-      "A number or a formula of x, y, z and T, the wetness.";
+      "Moisture only, in place of Conductivity: D of the flux -D grad C of the concentration C = Saturated concentration x wetness in each material. Conductivity is then Diffusivity x Saturated concentration, and the body stores Saturated concentration per wetness, so that flows and amounts are masses. A number or a formula of x, y, z and T, the wetness.";
     entry("Density", "1") =
       "Ignored when steady, and by elasticity unless its solver is `dynamics`; may be 0 then. A motion with the default is told in a note; `1.0` says that 1 is meant.";
     entry("Heat capacity", "1") =
-      "Per mass; the body stores Density x Heat capacity, either a number or a formula of x, y, z, T. Ignored when steady, and may be 0 then. With electricity their product is the "
-      "capacitance per volume, and 0 means a steady state.";
+      "Per mass; the body stores Density x Heat capacity, either a number or a formula of x, y, z, T. Ignored when steady, and may be 0 then. With electricity their product is the capacitance per volume, and 0 means a steady state.";
     entry("Saturated concentration", "1") =
-      "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. With Conductivity it is for the concentration field and the "
-      "weight alone, and the flux is -Conductivity x grad(wetness); with Diffusivity it is part of the conductivity and the storage. The wetness is continuous where it jumps.";
+      "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. With Conductivity it is for the concentration field and the weight alone, and the flux is -Conductivity x grad(wetness); with Diffusivity it is part of the conductivity and the storage. The wetness is continuous where it jumps.";
     declare(interface_rule, "Interface rule", "arithmetic", {"minimum", "arithmetic", "harmonic"}) =
-      "Conductivity of a bond between unequal nodes: the smaller value, the mean, or the "
-      "harmonic mean by the length of the bond in each phase.";
+      "Conductivity of a bond between unequal nodes: the smaller value, the mean, or the harmonic mean by the length of the bond in each phase.";
     entry("Bulk modulus")  = "Pressure per relative change of volume" + formula + two;
     entry("Shear modulus") = "Shear stress per change of angle" + formula + two;
     entry("Young modulus") = "Stress per strain of a bar" + formula + two;
@@ -83,9 +77,7 @@ namespace PeriDeal
             "Law",
             "linear",
             {"linear", "viscoelastic", "plastic", "softening", "formula"}) =
-      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises "
-      "stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their "
-      "force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`).";
+      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`).";
     entry("Tensile strength") =
       "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
       " The area under stress over opening is Fracture energy.";
@@ -98,16 +90,13 @@ namespace PeriDeal
     declare(law.softening, "Softening", "exponential", {"linear", "bilinear", "exponential"}) =
       "With `Law = softening`: the stress over the opening. `bilinear` has its kink at a third of the strength (Petersson's, for concrete).";
     declare("Relaxation", EntryType::list, "", "1, time") =
-      "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with "
-      "exp(-t/time). A time is that of the section `Time`.";
+      "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with exp(-t/time). A time is that of the section `Time`.";
     declare("Bond force", EntryType::formula, "", "1") =
       "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0.";
     declare("Weibull modulus", EntryType::text, "", "1") =
-      "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; "
-      "a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
+      "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
     declare("Strength seed", EntryType::text) =
-      "With Weibull modulus: which of the possible bodies. The same seed gives the same nodes the "
-      "same numbers, on any number of processes.";
+      "With Weibull modulus: which of the possible bodies. The same seed gives the same nodes the same numbers, on any number of processes.";
     parse();
   }
 

@@ -20,22 +20,17 @@ namespace PeriDeal
     declare("Kernel exponent", EntryType::text, "auto", "1") =
       "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.";
     declare(sampling.volume_fraction, "Volume fraction", "linear", {"none", "linear", "exact"}) =
-      "Share of a neighbour's volume that counts: all of it for r <= delta (none); a linear ramp "
-      "one spacing wide about r = delta; or the exact part of its lattice cell within the "
-      "horizon.";
+      "Share of a neighbour's volume that counts: all of it for r <= delta (none); a linear ramp one spacing wide about r = delta; or the exact part of its lattice cell within the horizon.";
     declare(sampling.calibration,
             "Calibration",
             "discrete",
             {"discrete", "isotropic", "analytic"}) =
-      "What makes a linear field conduct Conductivity times its gradient: the sum over a full "
-      "family of the lattice (exact at any m), or the integral (low by 7 % at m = 3 in 2D). `isotropic`, on lattices: the sum, by factors that depend on the direction of a bond, with which "
+      "What makes a linear field conduct Conductivity times its gradient: the sum over a full family of the lattice (exact at any m), or the integral (low by 7 % at m = 3 in 2D). `isotropic`, on lattices: the sum, by factors that depend on the direction of a bond, with which "
       "solids have their moduli in all directions.";
     declare(sampling.self_term, "Self term", "none", {"none", "paper"}) =
-      "The term of a node with itself as published by Bobaru and Duangpanya; inflates the "
-      "conductivity.";
+      "The term of a node with itself as published by Bobaru and Duangpanya; inflates the conductivity.";
     declare(sampling.nodal_volume, "Nodal volume", "partial", {"partial", "full"}) =
-      "Volume of nodes on the boundary: half a cell on an edge, a quarter at a corner, or "
-      "full cells.";
+      "Volume of nodes on the boundary: half a cell on an edge, a quarter at a corner, or full cells.";
     declare(form, "Operator form", "auto", {"auto", "lattice", "stored"}) =
       "How bonds are kept: computed from the lattice, stored one by one, or whichever suits.";
     declare(treatment,

@@ -14,9 +14,9 @@ namespace PeriDeal
   {
     /**
      * Newton's method: linear systems with the tangent, solved only as far as the iterations come
-     * near (Eisenstat and Walker 1996), by conjugate gradients whose multigrid is made for the first
-     * tangent and kept while it serves. Where a full step would go too far, which the residual along
-     * it tells, it is shortened; where forces have an energy it is lower then.
+     * near (Eisenstat and Walker 1996), by conjugate gradients whose multigrid is made for the
+     * first tangent and kept while it serves. Where a full step would go too far, which the
+     * residual along it tells, it is shortened; where forces have an energy it is lower then.
      */
     class Newton : public StaticSolver
     {
