@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bodies that yield: limit loads, what is left of strains, energy, any number of processes.
 
-    yielding.py ring | plate | motion | ranks | resume
+    yielding.py ring | plate | motion
 
 Bounds that follow from no theory are about 1.5 times the gap that was measured; the comment beside them gives it.
 """
@@ -12,7 +12,12 @@ import math
 from scene_test import PD, Comparison, check, run_parts, run_scene, scene_text
 from scene_texts import grid_mesh
 
+PLATE = "prm/elasticity/yielding_plate.prm"
 QUIET = {"Output/Fields": "none", "Solver/Tolerance": "1e-10"}
+# Families end at its sides: no forces are passed on from beyond, whose sums depend on the number of processes.
+STRUCK = {**QUIET, "Domain/Cells": "24, 24", "Elasticity/Solver": "dynamics", "Material/Density": "1", "Boundary conditions/Displacement": "", "Boundary conditions/Symmetry": "",
+          "Boundary conditions/Velocity": "right: 0.3*min(t, 0.1), free ; left: 0, free", "Peridynamics/Surface correction": "none", "Time/Time step": "auto", "Time/End time": "0.6",
+          "Output/Write at": "0.3"}
 
 RING = scene_text("""
 Dimension = 2
@@ -47,24 +52,52 @@ def ring_mesh(n=20):
     return grid_mesh((n, around), place, ((1, 1, 0), (2, 1, -1), (3, 0, 0), (4, 0, -1)))
 
 
-def imbalance(run):
-    """Of energy, over what went in."""
+def share_lost(run):
+    """The imbalance of energy over what went in."""
     work, gap = (run.total(quantity, PD) for quantity in ("work of loads and supports", "energy imbalance"))
     return abs(gap) / abs(work)
 
 
 def ring():
     """The limit pressure of a thick ring in plane strain, 2/sqrt(3) ln 2, without hardening."""
-    table = Comparison("Thick ring, b/a = 2: limit pressure over the yield stress")
-    limit = 2 / math.sqrt(3) * math.log(2)
-    mesh = ring_mesh()
-    for horizon, bound in (("0.1", 0.06), ("0.15", 0.06)):
+    table = Comparison("Thick ring, b/a = 2, 20 nodes across: limit pressure over the yield stress")
+    limit, mesh = 2 / math.sqrt(3) * math.log(2), ring_mesh()
+    # Measured: 3.0 % and 1.4 %, at 0.1, where nodes outside have some 12 bonds, 8.3 %.
+    for horizon, bound in (("0.15", 0.045), ("0.2", 0.021)):
         run = run_scene(RING, {"Domain/Mesh file": mesh, "Peridynamics/Horizon": horizon})
-        pressure = -run.total("force on 3 in x", PD) if run.total("force on 3 in x", PD) < 0 else run.total("force on 3 in x", PD)
-        table.add(f"horizon {horizon}", pressure, limit, relative=bound)
-        table.add_limit(f"horizon {horizon}: imbalance of energy", imbalance(run), 1e-8)
+        table.add(f"horizon {horizon}", run.total("force on 3 in x", PD), limit, relative=bound)
+        table.add_limit(f"horizon {horizon}: imbalance of energy", share_lost(run), 1e-9)  # measured: 1e-11
     table.show()
 
 
+def plate():
+    """A plate with a hole, pulled and let go, on several processes and by two solvers."""
+    table = Comparison("Plate with a hole that yields")
+    runs = {ranks: run_scene(PLATE, QUIET, ranks=ranks) for ranks in (1, 2, 4)}
+    pulled = runs[1].total("force on right in x", PD, time=1)
+    table.add("force at t = 1", pulled, 1.2, relative=0.05)  # measured: 3.3 %
+    table.add_limit("imbalance of energy", share_lost(runs[1]), 1e-9)  # measured: 3e-11
+    quantities = ("force on right in x", "strain energy", "energy dissipated by the law")
+    for ranks in (2, 4):
+        for quantity in quantities:
+            table.add(f"{quantity}, {ranks} processes", runs[ranks].total(quantity, PD), runs[1].total(quantity, PD), relative=1e-7)
+    coarse = {**QUIET, "Domain/Cells": "20, 20", "Time/Time step": "0.2"}
+    newton, gradients = (run_scene(PLATE, {**coarse, "Elasticity/Solver": solver}) for solver in ("newton", "conjugate gradients"))
+    for quantity in quantities:
+        table.add(f"{quantity}, by conjugate gradients", gradients.total(quantity, PD), newton.total(quantity, PD), relative=1e-6)
+    table.show()
+
+
+def motion():
+    """A plate that is struck: the same digits on any number of processes, and the balance of energy."""
+    runs = [run_scene(PLATE, STRUCK, ranks=ranks) for ranks in (1, 2, 4)]
+    for run, ranks in zip(runs[1:], (2, 4)):
+        check(run.probes == runs[0].probes, f"the same digits on {ranks} processes")
+    heat, work, drift = (runs[0].total(quantity, PD) for quantity in ("energy dissipated by the law", "work of loads and supports", "energy drift"))
+    print(f"work {work:.6g}, dissipated {heat:.6g}, drift {drift:.3g}")
+    check(heat > 0.2 * work, "the plate yields")
+    check(abs(drift) < 1e-9 * work, f"energy is kept: {drift} of {work}")
+
+
 if __name__ == "__main__":
-    run_parts(ring)
+    run_parts(ring, plate, motion)
