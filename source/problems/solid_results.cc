@@ -84,6 +84,7 @@ namespace PeriDeal
       const DoFHandler<dim> &dofs        = model.dofs();
       const bool             at_vertices = dofs.get_fe().n_dofs_per_vertex() > 0;
       std::vector<Vector>    u;
+      u.reserve(dim); // a vector that is copied forgets its ghosts
       for (unsigned int d = 0; d < dim; ++d)
         u.push_back(component_of(dofs, model.displacement, dim, d));
       std::map<types::boundary_id, std::pair<double, Tensor<1, dim>>> sides;

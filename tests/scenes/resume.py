@@ -219,6 +219,7 @@ def check_running():
 def check_ranks():
     """Explicit peridynamics does not ask how many processes there are; others do by round-off."""
     for scene, overrides, tolerance in (("coupling/growing_cracks.prm", {"Domain/Cells": "24, 24"}, 1e-10),
+                                        ("elasticity/yielding_ring.prm", {"Domain/Refinements": "3", "Time/Time step": "2", "Time/End time": "10", "Output/Write at": "2, 10", "Solver/Tolerance": "1e-13"}, 1e-10),
                                         ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", "Time/Time step": "2e-7"}, 1e-10)):
         whole, resumed = new_folder(), new_folder()
         check(run(scene, whole, overrides).returncode == 0, scene)
