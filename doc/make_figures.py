@@ -48,7 +48,10 @@ CHARTS_OF_PAGE = (
     ("crack_3d", "prm/heat/block_with_crack.prm", ["-s", "Time/Steady=true", "--cells", "9, 9, 9 | 17, 17, 17 | 33, 33, 33", "--budget", "4e5", "--repeat", "1"], TIMES),
     ("transient_crack", "prm/coupling/insulated_crack.prm", ["--cells", "21, 21 | 41, 41 | 81, 81", "--budget", "2e5"], BOTH),
     ("elastic_crack", "prm/elasticity/coupled_crack.prm", ["--cells", "11, 11 | 21, 21 | 41, 41 | 81, 81", "--budget", "2e5"], TIMES),
-    ("wave", "prm/elasticity/wave_in_bar.prm", ["--cells", "100 | 200 | 400 | 800", "--repeat", "5"], TIMES))
+    ("wave", "prm/elasticity/wave_in_bar.prm", ["--cells", "100 | 200 | 400 | 800", "--repeat", "5"], TIMES),
+    ("angle", "prm/heat/angle.prm", ["--cells", "1 | 2 | 4 | 8 | 16", "--repeat", "5"], TIMES),
+    ("strength", "prm/fracture/centre_crack.prm", ["--measure", "strength", "--cells", "21, 41 | 31, 61 | 47, 95", "--repeat", "1"], TIMES),
+    ("path", "prm/fracture/following_zone.prm", ["--measure", "path", "--cells", "21, 31 | 31, 45 | 51, 75", "--repeat", "1"], TIMES))
 OF_README = ("quick_start.prm", "coupling/growing_cracks.prm", "elasticity/coupled_crack.prm", "elasticity/thermal_stress.prm",
              "fracture/branching_crack.prm", "papers/le_2014/longitudinal.prm")
 BEGIN, END = "<!-- scenes: written by doc/make_figures.py -->\n", "<!-- end of scenes -->\n"

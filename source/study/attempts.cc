@@ -161,8 +161,36 @@ namespace PeriDeal
         cells.push_back(
           std::max<unsigned int>(2, std::lround(ratio > 1. && n < few ? std::ceil(n - part) : n)));
         if (family != Family::faces && family != Family::bonds)
+          std::max<unsigned int>(2, std::lround(ratio > 1. && n < few ? std::ceil(n - 1e-9) : n)));
+        if (family != Family::faces && family != Family::bonds && family != Family::zone)
           cells.back() = with_points_on_planes(d, cells.back());
       }
+    return family == Family::zone ? alike_with_points(cells) : cells;
+  }
+
+
+  template <int dim>
+  CellCounts Attempts<dim>::alike_with_points(const CellCounts &wanted) const
+  {
+    constexpr double most = 3., more = 1.02, longer = 1.2; // of cells, against each other
+    for (double times = 1.; times < most; times *= more)
+      {
+        CellCounts cells;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const auto least = static_cast<unsigned int>(std::lround(times * wanted[d]));
+            for (unsigned int n = least; cells.size() == d && n <= longer * least; ++n)
+              if (planes_on_lines(d, n) && corners_on_planes(points, d, n))
+                cells.push_back(n);
+            if (cells.size() == d)
+              break;
+          }
+        if (cells.size() == dim)
+          return cells;
+      }
+    CellCounts cells;
+    for (unsigned int d = 0; d < dim; ++d)
+      cells.push_back(planes ? with_points_on_planes(d, wanted[d]) : wanted[d]);
     return cells;
   }
 
@@ -225,9 +253,17 @@ namespace PeriDeal
     // In blocks without bonds pairs of nodes cost less: 0.2 s where this takes 4.7 s.
     if (!along_axes(box) || (dim == 3 && !scene.deforms))
       return {};
-    const double wanted = std::max(fewest_cells<dim>, 0.25 * needs.fineness);
-    const auto   between =
-      lines_through(box, points, planes ? *planes : CellLines(), longest / wanted);
+    const double wanted  = std::max(fewest_cells<dim>, 0.25 * needs.fineness);
+    const auto   through = [&](const CrackedBox &nodes) {
+      return lines_through(box, nodes, planes ? *planes : CellLines(), longest / wanted);
+    };
+    auto between = through(points);
+    if (!between && !points.cracks.empty() && !on_faces(1.))
+      { // a point that is nearer to an end than cells can be acts on the nearest node
+        CrackedBox none = points;
+        none.cracks.clear();
+        between = through(none);
+      }
     if (!between || !on_faces(1.))
       return between;
     const CellCounts lattice = *on_faces(wanted);

@@ -17,7 +17,6 @@ namespace PeriDeal
   namespace
   {
     constexpr double touching = 1e-9; // of the longest edge
-    constexpr double straight = 1e-3; // radians: no turn
 
 
     double to_segment(const Point<2> &p, const Point<2> &a, const Point<2> &b)
@@ -53,16 +52,22 @@ namespace PeriDeal
         for (const bool is_last : {false, true})
           {
             const Point<2> &p    = is_last ? lines[k].back() : lines[k].front();
-            bool            free = true;
-            for (unsigned int d = 0; d < 2; ++d)
-              free = free && p[d] > box.lower[d] + touching * longest &&
-                     p[d] < box.upper[d] - touching * longest;
+            bool            free = !on_side(p);
             for (std::size_t l = 0; l < lines.size(); ++l)
               free = free && (l == k || to_line(p, lines[l]) > touching * longest);
             if (free)
               open.push_back({k, is_last});
           }
       }
+  }
+
+
+  bool GrowingCracks::on_side(const Point<2> &p) const
+  {
+    for (unsigned int d = 0; d < 2; ++d)
+      if (p[d] <= box.lower[d] + touching * longest || p[d] >= box.upper[d] - touching * longest)
+        return true;
+    return false;
   }
 
 
@@ -112,6 +117,29 @@ namespace PeriDeal
   }
 
 
+  double GrowingCracks::way_ahead(const End &end) const
+  {
+    const Path        &line   = lines[end.line];
+    const Point<2>    &tip    = place(end);
+    const Point<2>    &before = end.is_last ? line[line.size() - 2] : line[1];
+    const Tensor<1, 2> far    = 4. * longest / tip.distance(before) * (tip - before);
+    return free_share(tip, tip + far, end.line) * far.norm();
+  }
+
+
+  double GrowingCracks::room(const End &end) const
+  {
+    const Point<2> &tip     = place(end);
+    double          nearest = 0.5 * last_stretch(end);
+    for (unsigned int d = 0; d < 2; ++d)
+      nearest = std::min({nearest, tip[d] - box.lower[d], box.upper[d] - tip[d]});
+    for (std::size_t l = 0; l < lines.size(); ++l)
+      if (l != end.line)
+        nearest = std::min(nearest, to_line(tip, lines[l]));
+    return nearest;
+  }
+
+
   double GrowingCracks::free_share(const Point<2>   &a,
                                    const Point<2>   &b,
                                    const std::size_t own) const
@@ -129,11 +157,17 @@ namespace PeriDeal
         {
           const Tensor<1, 2> edge  = lines[l][k] - lines[l][k - 1];
           const double       cross = cross_product_2d(way) * edge;
-          if (cross == 0.)
-            continue;
-          const Tensor<1, 2> to = lines[l][k - 1] - a;
-          const double       s  = (cross_product_2d(to) * edge) / cross,
-                       t        = (cross_product_2d(to) * way) / cross;
+          const Tensor<1, 2> to    = lines[l][k - 1] - a;
+          if (std::abs(cross) <= touching * way.norm() * edge.norm())
+            { // beside each other, or on one line, where the nearer end is met
+              if (std::abs(cross_product_2d(way) * to) <= touching * longest * way.norm())
+                for (const Tensor<1, 2> &there : {to, to + edge})
+                  if (const double s = there * way / way.norm_square(); s > touching && s < beyond)
+                    share = std::min(share, s);
+              continue;
+            }
+          const double s = (cross_product_2d(to) * edge) / cross,
+                       t = (cross_product_2d(to) * way) / cross;
           if (s > touching && s < beyond && t >= 0. && t <= 1.)
             share = std::min(share, s);
         }
@@ -155,25 +189,52 @@ namespace PeriDeal
     if (turns)
       line.push_back(tip);
     line.back() = tip + share * length * ahead;
-    bool ends   = share < 1.;
-    for (unsigned int d = 0; d < 2; ++d)
-      ends = ends || line.back()[d] < box.lower[d] + touching * longest ||
-             line.back()[d] > box.upper[d] - touching * longest;
+    bool ends   = share < 1. || on_side(line.back());
+    for (std::size_t l = 0; l < lines.size(); ++l)
+      ends = ends || (l != end.line && to_line(line.back(), lines[l]) <= touching * longest);
     if (!end.is_last)
       std::reverse(line.begin(), line.end());
-    if (ends)
-      open.erase(std::remove_if(open.begin(),
-                                open.end(),
-                                [&](const End &one) {
-                                  return one.line == end.line && one.is_last == end.is_last;
-                                }),
-                 open.end());
+    const Path &grown = lines[end.line];
+    open.erase(std::remove_if(open.begin(),
+                              open.end(),
+                              [&](const End &one) {
+                                if (one.line == end.line)
+                                  return ends && one.is_last == end.is_last;
+                                return to_line(place(one), grown) <= touching * longest;
+                              }),
+               open.end());
   }
 
 
   void GrowingCracks::let_through(const End &end)
   {
     grow(End(end), 0., 4. * longest);
+  }
+
+
+  bool GrowingCracks::part_the_body() const
+  {
+    const std::size_t         n = lines.size();
+    std::vector<std::size_t>  group(n);
+    std::vector<unsigned int> n_sides(n, 0);
+    const auto                touch = [&](const Path &one, const Path &other) {
+      return std::min(to_line(one.front(), other), to_line(one.back(), other)) <=
+             touching * longest;
+    };
+    for (std::size_t k = 0; k < n; ++k)
+      {
+        group[k] = k;
+        for (std::size_t l = 0; l < k; ++l)
+          if (touch(lines[k], lines[l]) || touch(lines[l], lines[k]))
+            std::replace(group.begin(),
+                         group.begin() + k + 1,
+                         std::size_t(group[l]),
+                         std::size_t(group[k]));
+      }
+    for (std::size_t k = 0; k < n; ++k)
+      for (const Point<2> &p : {lines[k].front(), lines[k].back()})
+        n_sides[group[k]] += on_side(p);
+    return *std::max_element(n_sides.begin(), n_sides.end()) > 1;
   }
 
 

@@ -286,12 +286,19 @@ namespace PeriDeal
       }
 
       /** As long as the budget allows it; else `limit` says so. */
-      GrowthTrace follow(const double step, const bool to_end)
+      GrowthTrace follow(const double                      step,
+                         const bool                        to_end,
+                         const std::optional<TracedState> &first = {})
       {
-        return tracer.follow(cracks, {step, to_end, 1., [this](const double seconds) {
-                                        limit = spending.limit_of(seconds, 0.);
-                                        return limit.empty();
-                                      }});
+        return tracer.follow(cracks,
+                             {step,
+                              to_end,
+                              1.,
+                              [this](const double seconds) {
+                                limit = spending.limit_of(seconds, 0.);
+                                return limit.empty();
+                              },
+                              first});
       }
 
       void tell_trace(const GrowthTrace &trace)
@@ -429,23 +436,28 @@ namespace PeriDeal
         const double           tolerance = scene.accuracy.tolerance;
         progress.line("Models = auto: the body without a horizon of its own is Griffith's: its "
                       "cracks are followed in ever smaller steps");
-        GrowthTrace before;
-        double      step = first_step(), error = -1.;
+        GrowthTrace                before;
+        std::optional<TracedState> first;
+        double                     step = first_step(), error = -1.;
         for (unsigned int n = 0;; ++n, step *= 0.5)
           {
-            GrowthTrace now = follow(step, true);
+            GrowthTrace now = follow(step, true, first);
             if (now.is_stopped)
               {
                 refuse_without_estimate(error, now.seconds);
                 break;
               }
-            const double grew = now.states.back().cracks.grown();
+            const double grew = now.grown;
             scene.accuracy.refuse(
               now.paths.empty(),
               "Measure",
               "is 'path', but no crack grows: loads are too small for its fracture energy.");
+            first = now.states.front();
+            // Smaller steps turn no more than these if none of these does.
             if (n > 0)
               error = distance_of_paths(now.paths, before.paths) / longest;
+            else if (now.turned <= GrowingCracks::straight)
+              error = 2. * GrowingCracks::straight * grew / longest;
             const Attempt &attempt = now.states.back().attempt;
             tell(attempt.model,
                  attempt.settings,

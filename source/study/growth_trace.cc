@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/analysis/tip_field.h>
 #include <perideal/base/instantiate.h>
 #include <perideal/base/user_error.h>
 #include <perideal/output/tables.h>
@@ -80,8 +81,26 @@ namespace PeriDeal
     }
 
 
+    bool is_open(const GrowingCracks &cracks, const GrowingCracks::End &end)
+    {
+      return std::any_of(cracks.ends().begin(),
+                         cracks.ends().end(),
+                         [&](const GrowingCracks::End &one) {
+                           return one.line == end.line && one.is_last == end.is_last;
+                         });
+    }
+
+
+    /** Ends that have grown, and the largest angle by which one turned. */
+    struct Grown
+    {
+      std::vector<GrowingCracks::End> ends;
+      double                          turned = 0.;
+    };
+
+
     /** Those that grow first, or hardly later, go on. */
-    void grow_first(GrowingCracks &cracks, const GriffithState &state, const double step)
+    Grown grow_first(GrowingCracks &cracks, const GriffithState &state, const double step)
     {
       constexpr double                      together = 1.02;
       const double                          first    = state.load();
@@ -92,8 +111,26 @@ namespace PeriDeal
         for (const GriffithEnd &one : state.ends)
           if (one.name == cracks.name(end) && one.load() <= together * first)
             growing.emplace_back(end, one.kink().angle);
+      Grown grown;
       for (const auto &[end, angle] : growing)
-        cracks.grow(end, angle, step);
+        {
+          cracks.grow(end, angle, step);
+          grown.ends.push_back(end);
+          grown.turned = std::max(grown.turned, std::abs(angle));
+        }
+      return grown;
+    }
+
+
+    /** What is left of the way to a side or another crack is less than a ring there needs. */
+    void end_near_sides(GrowingCracks                         &cracks,
+                        const std::vector<GrowingCracks::End> &ends,
+                        const double                           step)
+    {
+      constexpr double near = 0.5;
+      for (const GrowingCracks::End &end : ends)
+        if (is_open(cracks, end) && cracks.way_ahead(end) < near * step)
+          cracks.let_through(end);
     }
   } // namespace
 
@@ -176,17 +213,34 @@ namespace PeriDeal
   double CrackTracer<dim>::fineness_for(const GrowingCracks &cracks,
                                         const Attempts<dim> &attempts) const
   {
-    // A ring reaches over half of the last stretch, and needs two cells (crack_end_integrals()).
-    constexpr double ring = 0.45 * 0.5, more = 1.1, most = 50.;
-    const CrackedBox box      = cracked_box(scene);
-    double           shortest = std::numeric_limits<double>::max();
+    // A ring has this share of the room, and needs two cells (crack_end_integrals()).
+    constexpr double ring = 0.45, more = 1.1, most = 50.;
+    // Less of the longest edge beside sides and places that are held is not worth such cells; the
+    // stretch of a step is, or ends would be passed by.
+    constexpr double narrow  = 0.01;
+    const CrackedBox box     = cracked_box(scene);
+    double           longest = 0., narrowest = std::numeric_limits<double>::max();
+    for (unsigned int d = 0; d < dim; ++d)
+      longest = std::max(longest, box.upper[d] - box.lower[d]);
     for (const GrowingCracks::End &end : cracks.ends())
-      shortest = std::min(shortest, cracks.last_stretch(end));
+      narrowest = std::min(
+        narrowest,
+        std::max(room(cracks, end), std::min(narrow * longest, 0.5 * cracks.last_stretch(end))));
     double fineness = attempts.coarsest();
-    while (2. * diagonal_of(attempts.at(fineness), box) > ring * shortest &&
+    while (2. * diagonal_of(attempts.at(fineness), box) > ring * narrowest &&
            fineness < most * attempts.coarsest())
       fineness *= more;
     return fineness;
+  }
+
+
+  template <int dim>
+  double CrackTracer<dim>::room(const GrowingCracks &cracks, const GrowingCracks::End &end) const
+  {
+    double nearest = cracks.room(end);
+    if constexpr (dim == 2)
+      nearest = std::min(nearest, distance_to_parts(scene, cracks.place(end)));
+    return nearest;
   }
 
 
@@ -254,6 +308,105 @@ namespace PeriDeal
 
 
   template <int dim>
+  TracedState CrackTracer<dim>::first_state(const GrowingCracks &cracks,
+                                            const TraceControl  &control) const
+  {
+    if (control.first)
+      return *control.first;
+    TracedState now = next_state(cracks, control);
+    refuse_loads(now);
+    return now;
+  }
+
+
+  template <int dim>
+  TracedState CrackTracer<dim>::next_state(const GrowingCracks &cracks,
+                                           const TraceControl  &control) const
+  {
+    try
+      {
+        return state_of(cracks, scene.time.end_time, control.fineness);
+      }
+    catch (const UserError &error)
+      {
+        scene.accuracy.refuse(
+          true,
+          "Measure",
+          "is '" + scene.accuracy.measure_text() +
+            "', but the body cannot be computed with the cracks '" + cracks.segments() + "' (" +
+            error.message() +
+            "). A larger 'Tolerance' needs fewer steps of them, points of 'Parts' in section 'Boundary conditions' should lie away from their way, and "
+            "with 'Horizon' in section 'Peridynamics' as a length bonds break in place of it.");
+        throw;
+      }
+  }
+
+
+  template <int dim>
+  bool CrackTracer<dim>::pass_unseen(const TracedState &now,
+                                     const Ends        &growing,
+                                     const double       step,
+                                     GrowingCracks     &cracks,
+                                     unsigned int      &n_passed) const
+  {
+    constexpr double       near = 1.5; // steps
+    constexpr unsigned int most = 4;
+    bool                   any  = false;
+    const Ends             open = cracks.ends();
+    // Where nothing is known of any end all go on, as they did.
+    const bool none = std::none_of(open.begin(), open.end(), [&](const GrowingCracks::End &end) {
+      return is_seen(now.state, cracks.name(end));
+    });
+    for (const GrowingCracks::End &end : none ? open : growing)
+      {
+        if (!is_open(cracks, end) || is_seen(now.state, cracks.name(end)))
+          continue;
+        any = true;
+        if (cracks.way_ahead(end) < near * step)
+          cracks.let_through(end);
+        else
+          {
+            const dealii::Point<2> at = cracks.place(end);
+            scene.accuracy.refuse(
+              ++n_passed > most,
+              "Measure",
+              "is '" + scene.accuracy.measure_text() + "', but at (" + number_text(at[0]) + ", " +
+                number_text(at[1]) +
+                ") there is no room around the end of a crack for a ring of some cells, by which its stress intensities are "
+                "found. Move points and regions of 'Parts' in section 'Boundary conditions' away from its way, or give "
+                "'Horizon' in section 'Peridynamics' as a length.");
+            cracks.grow(end, 0., step);
+          }
+      }
+    if (!any)
+      n_passed = 0;
+    return any;
+  }
+
+
+  template <int dim>
+  void CrackTracer<dim>::rest_before(TracedState       &&now,
+                                     const TraceControl &control,
+                                     const double        reached,
+                                     const double        best,
+                                     GrowthTrace        &trace) const
+  {
+    const TracedState &last = trace.states.back();
+    trace.ends_early        = !control.to_end && last.state.force <= best;
+    if (!trace.ends_early)
+      {
+        const double share =
+          (1. - last.state.load()) / (std::min(now.state.load(), 2.) - last.state.load());
+        GrowingCracks cracks = last.cracks;
+        grow_first(cracks, last.state, share * control.step);
+        now       = next_state(cracks, control);
+        now.bears = std::min(1., std::max(reached, now.state.load())) * now.state.force;
+      }
+    trace.states.push_back(std::move(now));
+  }
+
+
+  template <int dim>
   GrowthTrace CrackTracer<dim>::follow(const GrowingCracks &from, const TraceControl &control) const
   {
     using Clock                    = std::chrono::steady_clock;
@@ -268,32 +421,24 @@ namespace PeriDeal
     trace.step            = control.step;
     GrowingCracks cracks  = from;
     double        reached = 0., best = 0.; // share of the loads, largest force
-    while (trace.states.size() < most)
+    Ends          growing;
+    unsigned int  n_passed = 0;
+    const auto    is_over  = [&] { return cracks.ends().empty() || cracks.part_the_body(); };
+    while (trace.states.size() < most && (trace.states.empty() || !is_over()))
       {
         const double before = seconds();
-        TracedState  now    = state_of(cracks, scene.time.end_time, control.fineness);
-        if (trace.states.empty())
-          refuse_loads(now);
-        for (const GrowingCracks::End &end : std::vector<GrowingCracks::End>(cracks.ends()))
-          if (!is_seen(now.state, now.cracks.name(end)))
-            cracks.let_through(end); // so near to a side that there is no room for a ring
+        TracedState  now    = trace.states.empty() ? first_state(cracks, control) :
+                                                     next_state(cracks, control);
+        if (pass_unseen(now, growing, control.step, cracks, n_passed))
+          continue;
         const double load = now.state.load();
-        if (load > 1. && !trace.states.empty() && trace.states.back().state.load() < 1.)
-          { // it comes to rest between both
-            const TracedState &last = trace.states.back();
-            trace.ends_early        = !control.to_end && last.state.force <= best;
-            if (trace.ends_early)
-              {
-                trace.states.push_back(std::move(now));
-                break;
-              }
-            const double share =
-              (1. - last.state.load()) / (std::min(load, 2.) - last.state.load());
-            cracks = last.cracks;
-            grow_first(cracks, last.state, share * control.step);
-            now       = state_of(cracks, scene.time.end_time, control.fineness);
-            now.bears = std::min(1., std::max(reached, now.state.load())) * now.state.force;
-            trace.states.push_back(std::move(now));
+        if (load > 1. && !trace.states.empty() && trace.states.back().state.load() < 1. &&
+            std::all_of(growing.begin(), growing.end(), [&](const GrowingCracks::End &end) {
+              return is_open(cracks, end);
+            }))
+          {
+            rest_before(std::move(now), control, reached, best, trace);
+            cracks = trace.states.back().cracks;
             break;
           }
         now.bears = load >= reached ? now.state.strength() : 0.;
@@ -304,16 +449,18 @@ namespace PeriDeal
         trace.ends_early =
           !control.to_end && reached < 1. &&
           ((trace.states.size() > 2 && last.state.force <= best) || load < fallen * reached);
-        if (reached >= 1. || trace.ends_early || cracks.ends().empty())
+        if (reached >= 1. || trace.ends_early)
           break;
         trace.is_stopped = control.may_go_on && !control.may_go_on(seconds() - before);
         if (trace.is_stopped)
           break;
-        grow_first(cracks, last.state, control.step);
-        if (cracks.ends().empty())
-          break;
+        const Grown grown = grow_first(cracks, last.state, control.step);
+        end_near_sides(cracks, grown.ends, control.step);
+        growing      = grown.ends;
+        trace.turned = std::max(trace.turned, grown.turned);
       }
     trace.paths   = cracks.paths();
+    trace.grown   = cracks.grown();
     trace.seconds = seconds();
     return trace;
   }

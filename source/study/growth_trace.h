@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "griffith.h"
@@ -32,7 +33,8 @@ namespace PeriDeal
     std::vector<GrowingCracks::Path> paths; // to a side, or as far as the loads bring them
     bool                             ends_early = false; // nothing later bears more
     bool                             is_stopped = false; // by TraceControl::may_go_on
-    double                           step = 0., seconds = 0.;
+    double                           turned     = 0.;    // the largest angle at any place, radians
+    double                           step = 0., grown = 0., seconds = 0.;
 
     /** The one that bears most. */
     std::size_t strongest() const;
@@ -49,6 +51,7 @@ namespace PeriDeal
     bool                              to_end   = false; // even if nothing later bears more
     double                            fineness = 1.; // of meshes, against the coarsest that will do
     std::function<bool(const double)> may_go_on;     // after so many seconds of one state
+    std::optional<TracedState>        first = {};    // if known from a trace before
   };
 
 
@@ -84,7 +87,34 @@ namespace PeriDeal
     void refuse_loads(const TracedState &state) const;
 
   private:
+    using Ends = std::vector<GrowingCracks::End>;
+
     double fineness_for(const GrowingCracks &cracks, const Attempts<dim> &attempts) const;
+
+    /** Around an end, for a ring by which its stress intensities are found. */
+    double room(const GrowingCracks &cracks, const GrowingCracks::End &end) const;
+
+    TracedState first_state(const GrowingCracks &cracks, const TraceControl &control) const;
+
+    /** state_of(), with what would help where it cannot be computed. */
+    TracedState next_state(const GrowingCracks &cracks, const TraceControl &control) const;
+
+    /**
+     * Lets those of the ends go straight on that have no room for a ring: to a side or another
+     * crack that is near, else by a step, past a place that is held. Whether any did.
+     */
+    bool pass_unseen(const TracedState &now,
+                     const Ends        &growing,
+                     const double       step,
+                     GrowingCracks     &cracks,
+                     unsigned int      &n_passed) const;
+
+    /** The state between the last one, whose cracks grow, and one that wants larger loads. */
+    void rest_before(TracedState       &&now,
+                     const TraceControl &control,
+                     const double        reached,
+                     const double        best,
+                     GrowthTrace        &trace) const;
 
     const Scene<dim>         &scene;
     const SceneText          &text;

@@ -69,6 +69,14 @@ def paths():
         check_close(a, -b, absolute=5e-3, what="symmetric about the middle")
     for line in lines:
         check_less(abs(line[-1][1]), 0.2, "across the load")
+    # Past the point that holds the plate, ahead of the crack, to the other side.
+    held = PULLED.replace("one: point -0.5, 0 ; two: point 0.5, 0", "one: point 1, 0 ; two: point 0.8, 0")
+    for ranks in (1, 2):
+        run = run_scene(plate("0,0 ; 0.3,0", held, "0, -1.5", "1, 1.5", measure="path"), {"Accuracy/Tolerance": "2e-2"}, ranks=ranks)
+        found = run.summary["accuracy"]
+        check(found["met"] and len(found["path"]["lines"]) == 1, f"a crack from a side under traction: {found['estimate']}")
+        check_close(found["path"]["lines"][0][-1][0], 1., absolute=1e-9, what="through the plate")
+        check_less(max(abs(y) for _, y in found["path"]["lines"][0]), 2e-3, "straight on")
 
 
 def lattices():

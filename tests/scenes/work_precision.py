@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """perideal study work_precision: costs, errors, the front and what is dominated, on one process and on two; mistakes.
 
-    python3 work_precision.py [front | exact | body | smooth | in_time | motion | measures | mistakes | ranks] ...     (all without arguments)
+    python3 work_precision.py [front | exact | body | mesh | smooth | in_time | motion | measures | mistakes | ranks] ...     (all without arguments)
 """
 
 import csv
@@ -272,6 +272,26 @@ def body():
         check(1e-3 < row["error"] < 0.1, f"{row['name']}: {row['error']}")
 
 
+def mesh():
+    """A body from a mesh file: at a corner cells that are fine there alone are worth more than halving all."""
+    _, _, directory = study("prm/heat/angle.prm", "--cells", "1 | 2 | 4 | 8", output="mesh")
+    data = results(directory)
+    rows = {row["name"]: row for row in data["rows"]}
+    check(data["reference"] == {"kind": "exact solution"} and len(rows) == 26, f"{data['reference']}, {len(rows)} rows")
+    order = {family["name"]: family["observed order"] for family in data["families"]}
+    check_close(order["FEM, degree 2"], 4 / 3, absolute=0.2, what="order in the body with a corner")
+    check_close(order["FEM, degree 1, fine at corners"], 2.0, absolute=0.3, what="order with cells that are fine at the corner")
+    check(order["FEM, degree 2, fine at corners"] > 2.6, f"order of degree 2, fine at the corner: {order}")
+    check_less(10 * rows["FEM, degree 2, fine at corners, edges in 8"]["error"], rows["FEM, degree 2, edges in 8"]["error"], "fine at the corner")
+    check(rows["PD exchange, edges in 4"]["error"] < rows["PD raw, edges in 4"]["error"], "families cut off at the sides are more wrong")
+    for pick in data["picks"]:
+        check(pick["met"] and pick["error"] < pick["tolerance"], f"{pick}")
+    for wrong, options, words in (("thirds", ["--cells", "1 | 3"], ["--cells", "powers of two"]), ("a measure", ["--measure", "opening"], ["--measure", "'field'"]),
+                                  ("no solution", ["-s", "Reference/Solution="], ["'Solution'", "mesh file"])):
+        stdout, stderr, _ = study("prm/heat/angle.prm", *options, output="mistakes", expect=1)
+        check_one_message(stdout, stderr, words, wrong)
+
+
 def measures():
     """Openings and stress intensities of a crack in an elastic body."""
     few = ["--cells", "21, 21 | 41, 41", "--budget", "8000", "--only", "reference", "FEM, crack on faces", "FEM, cells removed", "coupled, m = 3, c = 1, scaled"]
@@ -348,4 +368,4 @@ def ranks():
 
 
 if __name__ == "__main__":
-    run_parts(front, exact, body, smooth, in_time, motion, measures, mistakes, ranks)
+    run_parts(front, exact, body, mesh, smooth, in_time, motion, measures, mistakes, ranks)

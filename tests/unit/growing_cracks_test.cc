@@ -101,6 +101,47 @@ namespace
   }
 
 
+  TEST(GrowingCracks, know_what_is_around_their_ends)
+  {
+    const GrowingCracks      cracks = two_cracks();
+    const GrowingCracks::End first = cracks.ends()[0], left = cracks.ends()[1];
+    EXPECT_NEAR(cracks.way_ahead(first), 1.5, 1e-12); // to the side
+    EXPECT_NEAR(cracks.way_ahead(left), 1., 1e-12);   // below the other crack
+    EXPECT_NEAR(cracks.room(first), 0.25, 1e-14);     // half of the crack
+    EXPECT_NEAR(cracks.room(left), 0.125, 1e-14);
+    GrowingCracks longer = two_cracks();
+    longer.grow(first, std::atan2(-0.3, 0.6), 0.6); // to 0.06 above the other
+    EXPECT_NEAR(longer.room(longer.ends()[0]),
+                std::abs(0.5 - 0.6 * std::sin(std::atan2(0.3, 0.6)) - 0.2),
+                1e-12);
+    EXPECT_NEAR(longer.way_ahead(longer.ends()[0]), std::hypot(0.3, 0.6) - 0.6, 1e-12);
+  }
+
+
+  TEST(GrowingCracks, meet_on_one_line_and_part_the_body)
+  {
+    CrackedBox box;
+    box.lower  = {0., 0.};
+    box.upper  = {2., 1.};
+    box.cells  = {2, 1};
+    box.cracks = {{{0., 0.5}, {0.5, 0.5}}, {{1., 0.5}, {1.25, 0.5}}};
+    GrowingCracks            cracks(box);
+    const GrowingCracks::End first = cracks.ends()[0], last = cracks.ends()[2];
+    EXPECT_NEAR(cracks.way_ahead(first), 0.5, 1e-12);
+    cracks.grow(first, 0., 0.75); // and no farther than to the other one
+    EXPECT_NEAR(cracks.place(first).distance(Point<2>(1., 0.5)), 0., 1e-14);
+    ASSERT_EQ(cracks.ends().size(), 1u); // the two that met are none any more
+    EXPECT_EQ(cracks.ends()[0].line, last.line);
+    EXPECT_FALSE(cracks.part_the_body());
+    GrowingCracks just(box);
+    just.grow(first, 0., 0.5);
+    EXPECT_EQ(just.ends().size(), 1u);
+    cracks.let_through(last);
+    EXPECT_TRUE(cracks.ends().empty());
+    EXPECT_TRUE(cracks.part_the_body());
+  }
+
+
   TEST(GrowingCracks, distance_is_the_farthest_of_the_nearest)
   {
     const std::vector<GrowingCracks::Path> one   = {{Point<2>(0., 0.), Point<2>(1., 0.)}},

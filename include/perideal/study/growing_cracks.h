@@ -21,6 +21,9 @@ namespace PeriDeal
   public:
     using Path = std::vector<dealii::Point<2>>;
 
+    /** Angles in radians that are no turn. */
+    static constexpr double straight = 1e-3;
+
     /** An end that has not come to a side or to another crack yet. */
     struct End
     {
@@ -50,9 +53,15 @@ namespace PeriDeal
     /** Behind the end, since the last turn. */
     double last_stretch(const End &end) const;
 
+    /** Straight on to the next side or other crack. */
+    double way_ahead(const End &end) const;
+
+    /** Around the end: half of the last stretch, or less to a side or another crack. */
+    double room(const End &end) const;
+
     /**
      * Let an end go on by a length, turned to the left by an angle; if it comes to a side or to
-     * another crack, only so far, and it is no end any more.
+     * another crack, only so far, and it is no end any more, nor is the other one that it meets.
      */
     void grow(const End &end, const double angle, const double length);
 
@@ -62,7 +71,12 @@ namespace PeriDeal
     /** What has grown, each from where it was at the beginning; a line for each end that grew. */
     std::vector<Path> paths() const;
 
+    /** Whether a crack, or cracks that have met, run from side to side. */
+    bool part_the_body() const;
+
   private:
+    bool on_side(const dealii::Point<2> &p) const; // or beyond
+
     /** The share of the way from a to b until a side or another crack, 1 if there is none. */
     double free_share(const dealii::Point<2> &a,
                       const dealii::Point<2> &b,

@@ -61,6 +61,8 @@ class Ended(Exception):
 
 def _common_settings(comparison: str) -> Dict[str, str]:
     """What is the same in all rows but those in which the program chooses."""
+    if comparison == "mesh":
+        return {**OUTPUT, "Output/Grid": "", "Solver/Direct solver up to": str(MOST_DIRECT)}
     common = {**OUTPUT, "Domain/Nodes": "vertices", "Peridynamics/Flux treatment": "natural", "Solver/Direct solver up to": str(MOST_DIRECT)}
     if "cracks" in comparison:
         common.update({"Cracks/Nodes on cracks": "left", "Finite elements/Degree": "1"})  # these very cells
@@ -70,6 +72,8 @@ def _common_settings(comparison: str) -> Dict[str, str]:
 def _decided_entries(comparison: str) -> List[str]:
     """The entries that no override may touch."""
     decided = {"Domain/Cells", "Output/Grid", *_common_settings(comparison)}
+    if comparison == "mesh":
+        decided |= {"Domain/Refinements", "Domain/Coarsening", "Peridynamics/Horizon"}
     return sorted(decided.union(*(family.settings for family in FAMILIES[comparison])))
 
 
@@ -78,11 +82,11 @@ def _own_settings(facts: dict, plan: Plan, row: Row) -> Dict[str, str]:
     own = dict(row.settings)
     if plan.measure == "path" and row.role == "method":
         own["Output/Fields"] = "vtu"  # with the cracks
-    if plan.comparison == "growth":
+    if plan.comparison in ("growth", "mesh"):
         own["Output/Grid"] = ""
     elif row.role != "reference":
         own["Output/Grid"] = "" if row.role == "pick" else to_text(row.cells)
-    if not row.is_chosen:
+    if not row.is_chosen and plan.comparison != "mesh":
         own["Domain/Cells"] = to_text(row.cells)
         if n_vertices(row.cells) <= MOST_DIRECT:
             own["Solver/Direct solver up to"] = str(MOST_DIRECT_OF_FEW)
@@ -150,7 +154,8 @@ def _leave_out_impossible(plan: Plan, server: Server, scene: str, overrides: Seq
             continue
         faults[row.family.name] = ""
         try:
-            server.describe(scene, [*overrides, f"Domain/Cells={to_text(row.cells)}", *settings(row.family.settings)])
+            cells = [] if plan.comparison == "mesh" else [f"Domain/Cells={to_text(row.cells)}"]
+            server.describe(scene, [*overrides, *cells, *settings(row.settings)])
         except Error as error:
             faults[row.family.name] = mistake_in(error)
             plan.left_out.append(f"{row.family.name}: {faults[row.family.name]}")
@@ -257,7 +262,8 @@ def run(scene: str, options: Options = Options()) -> str:
     require_scene(scene)
     with Server() as server:
         # The models of the rows may be others.
-        overrides = [*options.overrides, "Models=finite elements", "Peridynamics/Surface correction=none", *settings(OUTPUT)]
+        model = "peridynamics" if options.measure in growth.MEASURES else "finite elements"  # which do not break
+        overrides = [*options.overrides, f"Models={model}", "Peridynamics/Surface correction=none", *settings(OUTPUT)]
         facts = server.describe(scene, overrides)
         require_comparable(facts)
         comparison = comparison_of(facts, options.measure)

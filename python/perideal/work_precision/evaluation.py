@@ -193,6 +193,8 @@ def evaluate(facts: dict, plan: Plan, computed: List[ComputedRow]) -> WorkResult
     results = WorkResults(Reference(cracked=bool(facts["cracks"])))
     if plan.comparison == "growth":
         return _evaluate_growth(facts, plan, computed, results)
+    if plan.comparison == "mesh":
+        return _evaluate_mesh(facts, plan, computed, results)
     limit = Limit()
     if plan.reference:
         solutions = _solutions(plan, computed)
@@ -246,6 +248,23 @@ def _evaluate_growth(facts: dict, plan: Plan, computed: List[ComputedRow], resul
             results.rows.append(entry)
         else:
             results.without.append(planned.name)
+    return results
+
+
+def _evaluate_mesh(facts: dict, plan: Plan, computed: List[ComputedRow], results: WorkResults) -> WorkResults:
+    """Each on its own mesh against the exact solution, as the program has found it."""
+    def error(row, model):
+        return row.summary["models"][model]["errors"]["relative l2"][-1][1]
+
+    for planned, row in zip(plan.rows, computed):
+        if not row.is_finished:
+            continue
+        if planned.role == "pick":
+            results.picks.append(_pick(planned, row, error(row, "auto")))
+            continue
+        entry = _costs(planned, row, facts, steady=True)
+        entry.error = error(row, planned.family.model)
+        results.rows.append(entry)
     return results
 
 

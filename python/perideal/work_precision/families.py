@@ -20,6 +20,7 @@ class Family:
     multiple: int = 1  # of the numbers of cells
     given_zone: bool = False  # the zone is the scene's, by a formula
     courant: float = 0.0  # steps over the time in which a wave crosses a cell; motion only
+    halvings: int = 1  # of cells at corners, while those elsewhere are halved once; mesh files only
 
 
 def _cracked(name: str, model: str, mesh: str, correction: str) -> Family:
@@ -154,6 +155,20 @@ def _breaking() -> List[Family]:
     return families
 
 
+def _on_meshes() -> List[Family]:
+    """Of a mesh from a file, whose cells are halved."""
+    families = []
+    for degree, halvings in (("1", 2), ("2", 3)):
+        for at_corners in (1, halvings):
+            family = _plain(f"FEM, degree {degree}" + (", fine at corners" if at_corners > 1 else ""), ELEMENTS)
+            family.settings.update({"Finite elements/Degree": degree, "Domain/Fine where": "corners" if at_corners > 1 else "auto"})
+            family.halvings = at_corners
+            families.append(family)
+    for kind, treatment, correction in (("raw", "none", "none"), ("energy-corrected", "none", "energy"), ("exchange", "exchange", "none")):
+        families.append(_plain(f"PD {kind}", BONDS, treatment, correction))
+    return families
+
+
 # By what a scene lets one choose among.
 FAMILIES = {"cracks": _around_cracks(), "solid cracks": _bodies_with_cracks(), "field": _without_cracks(deforms=False),
-            "solid": _without_cracks(deforms=True), "motion": _in_motion(), "growth": _breaking()}
+            "solid": _without_cracks(deforms=True), "motion": _in_motion(), "growth": _breaking(), "mesh": _on_meshes()}

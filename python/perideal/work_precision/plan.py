@@ -10,10 +10,11 @@ from ..program import Error
 from . import growth, lattice
 from .families import FAMILIES, Family
 from .lattice import Cells
-from ..words import did_you_mean, number_text, readable_count
+from ..words import did_you_mean, full_precision, number_text, readable_count
 
 MEASURES = ("field", "opening", "stress intensity", *growth.MEASURES)
 N_RUNGS = 4
+PICKED = ("3e-2", "1e-2", "1e-3")
 
 
 @dataclasses.dataclass
@@ -66,6 +67,8 @@ def comparison_of(facts: dict, measure: str = "field") -> str:
     """Among which methods a scene lets one choose."""
     if measure in growth.MEASURES:
         return "growth"
+    if facts.get("mesh file"):
+        return "mesh"
     if facts["cracks"]:
         return "solid cracks" if facts["deforms"] else "cracks"
     return "field" if not facts["deforms"] else "motion" if facts["moves"] else "solid"
@@ -75,6 +78,11 @@ def require_comparable(facts: dict) -> None:
     """Raises Error where methods and lattices cannot be compared."""
     if facts["holes"]:
         raise Error("work_precision: 'Holes' in section 'Domain' has to be empty: a body with holes changes with the lattice.")
+    if facts.get("mesh file"):
+        if facts["cracks"] or facts["deforms"] or not facts["exact solution"] or not facts["steady"]:
+            raise Error("work_precision: a body from a mesh file ('Shape' in section 'Domain') is compared where its state is steady, has no cracks, and "
+                        "'Solution' in section 'Reference' is given: heat, moisture and electricity.")
+        return
     if not facts["box"]:
         raise Error("work_precision: 'Shape' in section 'Domain' has to be box: other bodies change with the lattice, or have none.")
     if facts["cracks conduct"] and facts["contact conductance"] < 0:
@@ -101,6 +109,9 @@ def make_plan(facts: dict, measure: str, cells: str = "", reference: str = "", b
     """
     dim = facts["dimension"]
     plan = Plan(parse_measure(measure), comparison_of(facts, measure))
+    if plan.comparison == "mesh":
+        _add_halvings(plan, facts, cells, picks, no_choice)
+        return plan
     plan.ladder = lattice.parse_ladder(cells, "--cells", dim, 2) if cells else lattice.default_ladder(tuple(facts["cells"]), N_RUNGS)
     if len(plan.ladder) < 2:
         raise Error(f"work_precision needs at least two lattices, but 'Cells' in section 'Domain', {lattice.to_text(facts['cells'])}, is too "
@@ -126,6 +137,31 @@ def make_plan(facts: dict, measure: str, cells: str = "", reference: str = "", b
     if not facts["steady"] and plan.comparison in ("cracks", "field"):
         _add_steppers(plan)
     return plan
+
+
+def _add_halvings(plan: Plan, facts: dict, cells: str, picks: bool, no_choice: str) -> None:
+    """The cells of the file, halved ever more often; the scene's horizon is that of its `Refinements`."""
+    if plan.measure != "field":
+        raise Error(f"command line: --measure '{plan.measure}': of a body from a mesh file fields are compared. Use 'field'.")
+    plan.ladder = lattice.parse_ladder(cells, "--cells", 1, 2) if cells else [(2 ** k,) for k in range(N_RUNGS)]
+    if any(n & (n - 1) for n, in plan.ladder):
+        raise Error(f"command line: --cells '{cells}': of a mesh file needs into how many an edge is divided, powers of two: '1 | 2 | 4 | 8'.")
+    for family in FAMILIES[plan.comparison]:
+        if family.model == "peridynamics" and not facts["horizon"] > 0:
+            plan.left_out.append(f"{family.name}: 'Horizon' in section 'Peridynamics' is no length.")
+            continue
+        for rung in plan.ladder:
+            times = rung[0].bit_length() - 1
+            if times == 0 and family.halvings > 1:
+                continue  # nothing is halved
+            own = {"Domain/Refinements": str(family.halvings * times), "Domain/Coarsening": str((family.halvings - 1) * times)}
+            if family.model == "peridynamics":
+                own["Peridynamics/Horizon"] = full_precision(facts["horizon"] * 2.0 ** (facts["refinements"] - times))
+            plan.rows.append(Row(f"{family.name}, edges in {rung[0]}", "method", rung, {**family.settings, **own}, family))
+    plan.no_picks = no_choice
+    for tolerance in PICKED if picks and not no_choice else ():
+        plan.rows.append(Row(f"auto, {tolerance}", "pick", plan.ladder[-1], {
+            "Models": "auto", "Peridynamics/Horizon": "", "Accuracy/Measure": "field", "Accuracy/Tolerance": tolerance}, tolerance=float(tolerance)))
 
 
 def _add_growth(plan: Plan, facts: dict, budget: float, picks: bool, no_choice: str) -> None:
@@ -228,7 +264,7 @@ def _add_picks(plan: Plan, facts: dict, no_choice: str) -> None:
     if no_choice:
         return
     compared = _beside_cracks(facts, plan.ladder[-1])
-    for tolerance in ("3e-2", "1e-2", "1e-3"):
+    for tolerance in PICKED:
         for role, what in (("pick", ""), ("pick values", ", values")):
             plan.rows.append(Row(f"auto, {tolerance}{what}", role, compared, {
                 "Models": "auto", "Peridynamics/Horizon": "",  # the classical solution, as all
