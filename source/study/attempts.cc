@@ -160,37 +160,30 @@ namespace PeriDeal
         constexpr double few = 8., part = 0.25;
         cells.push_back(
           std::max<unsigned int>(2, std::lround(ratio > 1. && n < few ? std::ceil(n - part) : n)));
-        if (family != Family::faces && family != Family::bonds)
-          std::max<unsigned int>(2, std::lround(ratio > 1. && n < few ? std::ceil(n - 1e-9) : n)));
         if (family != Family::faces && family != Family::bonds && family != Family::zone)
           cells.back() = with_points_on_planes(d, cells.back());
       }
-    return family == Family::zone ? alike_with_points(cells) : cells;
-  }
-
-
-  template <int dim>
-  CellCounts Attempts<dim>::alike_with_points(const CellCounts &wanted) const
-  {
+    if (family != Family::zone)
+      return cells;
+    // Families need cells about as long as wide, with points and planes on lines.
     constexpr double most = 3., more = 1.02, longer = 1.2; // of cells, against each other
     for (double times = 1.; times < most; times *= more)
       {
-        CellCounts cells;
+        CellCounts alike;
         for (unsigned int d = 0; d < dim; ++d)
           {
-            const auto least = static_cast<unsigned int>(std::lround(times * wanted[d]));
-            for (unsigned int n = least; cells.size() == d && n <= longer * least; ++n)
+            const auto least = static_cast<unsigned int>(std::lround(times * cells[d]));
+            for (unsigned int n = least; alike.size() == d && n <= longer * least; ++n)
               if (planes_on_lines(d, n) && corners_on_planes(points, d, n))
-                cells.push_back(n);
-            if (cells.size() == d)
+                alike.push_back(n);
+            if (alike.size() == d)
               break;
           }
-        if (cells.size() == dim)
-          return cells;
+        if (alike.size() == dim)
+          return alike;
       }
-    CellCounts cells;
-    for (unsigned int d = 0; d < dim; ++d)
-      cells.push_back(planes ? with_points_on_planes(d, wanted[d]) : wanted[d]);
+    for (unsigned int d = 0; d < dim && planes; ++d)
+      cells[d] = with_points_on_planes(d, cells[d]);
     return cells;
   }
 
