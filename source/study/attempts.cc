@@ -144,6 +144,35 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /**
+     * At least so many cells along each edge, about as long as wide as those, since families need
+     * that, with lines where @p fits wants them; none if there are no such with less than three
+     * times as many.
+     */
+    template <typename Fits>
+    std::optional<CellCounts> fitting_cells(const CellCounts &wanted, const Fits &fits)
+    {
+      constexpr double most = 3., more = 1.02, longer = 1.2;
+      for (double times = 1.; times < most; times *= more)
+        {
+          CellCounts cells;
+          for (unsigned int d = 0; d < wanted.size() && cells.size() == d; ++d)
+            {
+              const auto least = static_cast<unsigned int>(std::lround(times * wanted[d]));
+              for (unsigned int n = least; cells.size() == d && n <= longer * least; ++n)
+                if (fits(d, n))
+                  cells.push_back(n);
+            }
+          if (cells.size() == wanted.size())
+            return cells;
+        }
+      return {};
+    }
+  } // namespace
+
+
   template <int dim>
   CellCounts Attempts<dim>::counts(const double fineness) const
   {
@@ -162,32 +191,16 @@ namespace PeriDeal
         if (family != Family::faces && family != Family::bonds && family != Family::zone)
           cells.back() = with_points_on_planes(d, cells.back());
       }
-    return family == Family::zone ? alike_with_points(cells) : cells;
-  }
-
-
-  template <int dim>
-  CellCounts Attempts<dim>::alike_with_points(const CellCounts &wanted) const
-  {
-    constexpr double most = 3., more = 1.02, longer = 1.2; // of cells, against each other
-    for (double times = 1.; times < most; times *= more)
-      {
-        CellCounts cells;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const auto least = static_cast<unsigned int>(std::lround(times * wanted[d]));
-            for (unsigned int n = least; cells.size() == d && n <= longer * least; ++n)
-              if (planes_on_lines(d, n) && corners_on_planes(points, d, n))
-                cells.push_back(n);
-            if (cells.size() == d)
-              break;
-          }
-        if (cells.size() == dim)
-          return cells;
-      }
-    CellCounts cells;
-    for (unsigned int d = 0; d < dim; ++d)
-      cells.push_back(planes ? with_points_on_planes(d, wanted[d]) : wanted[d]);
+    if (family != Family::zone)
+      return cells;
+    const std::optional<CellCounts> fitting =
+      fitting_cells(cells, [&](unsigned int d, unsigned int n) {
+        return planes_on_lines(d, n) && corners_on_planes(points, d, n);
+      });
+    if (fitting)
+      return *fitting;
+    for (unsigned int d = 0; d < dim && planes; ++d)
+      cells[d] = with_points_on_planes(d, cells[d]);
     return cells;
   }
 

@@ -135,9 +135,6 @@ namespace PeriDeal
     std::vector<double> first_counts() const;
     CellCounts          counts(const double fineness) const;
     bool                planes_on_lines(const unsigned int direction, const unsigned int n) const;
-    /** With points and planes on lines, and cells about as long as wide, which families need. */
-    CellCounts alike_with_points(const CellCounts &wanted) const;
-
     unsigned int with_points_on_planes(const unsigned int direction, const unsigned int n) const;
     void         set_mesh(const double fineness, Attempt &attempt) const;
     std::optional<CellCounts> on_faces(const double fineness) const;
