@@ -145,6 +145,35 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /**
+     * At least so many cells along each edge, about as long as wide as those, since families need
+     * that, with lines where @p fits wants them; none if there are no such with less than three
+     * times as many.
+     */
+    template <typename Fits>
+    std::optional<CellCounts> fitting_cells(const CellCounts &wanted, const Fits &fits)
+    {
+      constexpr double most = 3., more = 1.02, longer = 1.2;
+      for (double times = 1.; times < most; times *= more)
+        {
+          CellCounts cells;
+          for (unsigned int d = 0; d < wanted.size() && cells.size() == d; ++d)
+            {
+              const auto least = static_cast<unsigned int>(std::lround(times * wanted[d]));
+              for (unsigned int n = least; cells.size() == d && n <= longer * least; ++n)
+                if (fits(d, n))
+                  cells.push_back(n);
+            }
+          if (cells.size() == wanted.size())
+            return cells;
+        }
+      return {};
+    }
+  } // namespace
+
+
   template <int dim>
   CellCounts Attempts<dim>::counts(const double fineness) const
   {
@@ -165,23 +194,12 @@ namespace PeriDeal
       }
     if (family != Family::zone)
       return cells;
-    // Families need cells about as long as wide, with points and planes on lines.
-    constexpr double most = 3., more = 1.02, longer = 1.2; // of cells, against each other
-    for (double times = 1.; times < most; times *= more)
-      {
-        CellCounts alike;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const auto least = static_cast<unsigned int>(std::lround(times * cells[d]));
-            for (unsigned int n = least; alike.size() == d && n <= longer * least; ++n)
-              if (planes_on_lines(d, n) && corners_on_planes(points, d, n))
-                alike.push_back(n);
-            if (alike.size() == d)
-              break;
-          }
-        if (alike.size() == dim)
-          return alike;
-      }
+    const std::optional<CellCounts> fitting =
+      fitting_cells(cells, [&](unsigned int d, unsigned int n) {
+        return planes_on_lines(d, n) && corners_on_planes(points, d, n);
+      });
+    if (fitting)
+      return *fitting;
     for (unsigned int d = 0; d < dim && planes; ++d)
       cells[d] = with_points_on_planes(d, cells[d]);
     return cells;

@@ -453,10 +453,10 @@ namespace PeriDeal
               "Measure",
               "is 'path', but no crack grows: loads are too small for its fracture energy.");
             first = now.states.front();
-            // Smaller steps turn no more than these if none of these does.
+            // Smaller steps turn no more if none does; where cracks come to rest depends on them.
             if (n > 0)
               error = distance_of_paths(now.paths, before.paths) / longest;
-            else if (now.turned <= GrowingCracks::straight)
+            else if (now.turned <= GrowingCracks::straight && !now.rests)
               error = 2. * GrowingCracks::straight * grew / longest;
             const Attempt &attempt = now.states.back().attempt;
             tell(attempt.model,

@@ -437,6 +437,7 @@ namespace PeriDeal
               return is_open(cracks, end);
             }))
           {
+            trace.rests = true;
             rest_before(std::move(now), control, reached, best, trace);
             cracks = trace.states.back().cracks;
             break;
@@ -449,7 +450,8 @@ namespace PeriDeal
         trace.ends_early =
           !control.to_end && reached < 1. &&
           ((trace.states.size() > 2 && last.state.force <= best) || load < fallen * reached);
-        if (reached >= 1. || trace.ends_early)
+        trace.rests = reached >= 1.;
+        if (trace.rests || trace.ends_early)
           break;
         trace.is_stopped = control.may_go_on && !control.may_go_on(seconds() - before);
         if (trace.is_stopped)

@@ -33,6 +33,7 @@ namespace PeriDeal
     std::vector<GrowingCracks::Path> paths; // to a side, or as far as the loads bring them
     bool                             ends_early = false; // nothing later bears more
     bool                             is_stopped = false; // by TraceControl::may_go_on
+    bool                             rests      = false; // before a side, at the end of the run
     double                           turned     = 0.;    // the largest angle at any place, radians
     double                           step = 0., grown = 0., seconds = 0.;
 

@@ -106,7 +106,7 @@ namespace PeriDeal
       {"box", scene.domain.shape == Shape::box},
       {"lattice", has_plain_lattice(scene)},
       {"mesh file", scene.domain.shape == Shape::mesh_file},
-      {"refinements", scene.domain.refinements},
+      {"refinements", scene.domain.coarsening.refinements},
       {"horizon", scene.peridynamics.horizon},
       {"holes", !scene.domain.holes.listed.empty()},
       {"lower", box.lower},
