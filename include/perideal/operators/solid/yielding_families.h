@@ -74,7 +74,7 @@ namespace PeriDeal
       return tangent.any;
     }
 
-    /** K is that of the elastic body, until the next linearize(): no body that yields is stiffer. */
+    /** K is that of the elastic body until the next linearize(); no body that yields is stiffer. */
     void forget_tangent()
     {
       tangent.any = false;
