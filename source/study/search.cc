@@ -76,12 +76,10 @@ namespace PeriDeal
                             family.first_ratio());
     else if (n_compared() > 2 && now.error > tolerance)
       wanted = fineness_for(now, last, aim * tolerance, farthest);
-    // Around cracks cells come in powers of two, and rough places are seen unevenly: a third mesh
-    // that is barely finer shows no order.
-    const bool is_third = n_compared() == 2, in_powers = latest.attempt.model == ModelKind::coupled,
-               is_uneven = family.best_order() <= 1.;
-    const double least   = (is_third && in_powers ? 1.5 : is_third && is_uneven ? 1.3 : 1.1) * last;
-    wanted               = std::max(wanted, least);
+    // Rough places are seen unevenly: a third mesh that is barely finer shows no order.
+    const bool   is_uneven   = n_compared() == 2 && family.best_order() <= 1.;
+    const double least       = (is_uneven ? 1.3 : 1.1) * last;
+    wanted                   = std::max(wanted, least);
     Attempt          attempt = with_settings(wanted);
     constexpr double most    = 100.; // of a given mesh there may be no finer one
     for (double more = least; attempt.fineness < least && more < most * least; more *= 1.1)
