@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/diverged.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace PeriDeal
 {
@@ -48,6 +50,29 @@ namespace PeriDeal
       /** Iterations are those of the linear systems. */
       unsigned int solve(Vector &u, const double t, const double size) override
       {
+        try
+          {
+            return find_equilibrium(u, t, size);
+          }
+        catch (const Diverged &failure)
+          {
+            std::ostringstream message;
+            message
+              << "'Solver = newton' in section 'Elasticity' found no equilibrium at t = " << t
+              << ". The loads may be more than the body bears: beyond a limit load there is none. Prescribe 'Displacement' in section 'Boundary conditions' in place of 'Traction', or try a "
+                 "smaller 'Time step' in section 'Time'. What the iterations said: "
+              << failure.message();
+            throw Diverged(message.str(),
+                           failure.trip.monitor,
+                           failure.trip.value,
+                           failure.trip.bound,
+                           t);
+          }
+      }
+
+    private:
+      unsigned int find_equilibrium(Vector &u, const double t, const double size)
+      {
         StaticOptions of_steps  = options;
         of_steps.max_iterations = std::min(options.max_iterations, most_steps);
         ResidualGoal goal(name(), of_steps, size);
@@ -74,7 +99,6 @@ namespace PeriDeal
         return n_iterations;
       }
 
-    private:
       static constexpr unsigned int most_steps = 100;
       static constexpr double       roughest   = 1e-2;
 
