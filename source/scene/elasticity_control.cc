@@ -123,7 +123,7 @@ namespace PeriDeal
     refuse(
       has_full_kinematics() && solver == ElasticSolver::linear,
       "Kinematics",
-      "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'newton' or another solver.");
+      "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'conjugate gradients' or another solver.");
   }
 
 
