@@ -83,14 +83,15 @@ class ElasticSections:
         draw(self.worth_drawing(stresses, [last], scalars["von_mises"]), [last])
         self.page.add('<div class="wide">' + elastic_tables.extremes_table(
             self.run, last, [scalars["von_mises"]] + stresses) + "</div>")
-        self.damage(draw)
+        for name in ("plastic_strain", "damage"):
+            self.lasting(name, draw)
         if any(self.run.has_field(i, "temperature") for i in self.shown):
             self.page.section(scalars["temperature"].title, "temperature")
             draw(self.worth_drawing([scalars["temperature"]], self.shown), self.shown)
 
-    def damage(self, draw):
-        """The damage in the deformed shape; nothing where all bonds are whole."""
-        field = self.words.fields["damage"]
+    def lasting(self, name, draw):
+        """What does not go back, in the deformed shape; nothing where there is none."""
+        field = self.words.fields[name]
         if not any((self.values(field, i) > ROUND_OFF).any() for i in self.shown):
             return
         self.page.section(field.title, field.name)

@@ -9,12 +9,13 @@ from tables import cell, table
 from words import with_unit
 
 MODULI = ("Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio")
-ELASTIC = MODULI + ("Density", "Thermal expansion", "Fracture energy", "Critical stretch")
+ELASTIC = MODULI + ("Density", "Thermal expansion", "Fracture energy", "Critical stretch", "Tensile strength",
+                    "Yield stress", "Hardening modulus")
 DIFFUSING = {"heat": ("Conductivity", "Density", "Heat capacity"),
              "moisture": ("Conductivity", "Saturated concentration", "Density", "Heat capacity"),
              "electricity": ("Conductivity", "Density", "Heat capacity")}
 CALLED = {("moisture", "Conductivity"): "Diffusivity"}
-TRIVIAL = {"Density": "1", "Heat capacity": "1", "Thermal expansion": "0", "Saturated concentration": "1"}
+TRIVIAL = {"Density": "1", "Heat capacity": "1", "Thermal expansion": "0", "Saturated concentration": "1", "Hardening modulus": "0"}
 
 
 def number(text):

@@ -139,6 +139,9 @@ class Words:
                                       about="The share of a node's bonds, by volume, that are "
                                       "broken: 0 where all are whole, 1 where none is left. Bonds "
                                       "that a crack of the scene cuts are broken from the start.")
+        self.fields["plastic_strain"] = Field("plastic_strain", isolines="", called="equivalent plastic strain",
+                                              about="The strain that stays, as a length of its path: where it is 0 the "
+                                              "body has not yielded.")
         self.fields["temperature"] = Field("temperature")
 
     def column(self, name):
