@@ -187,8 +187,11 @@ namespace PeriDeal
                                   (first.empty() ? 2. : first[d]) * std::max(1., ratio));
         // Few cells get more with the others, or nothing is seen of them.
         constexpr double few = 8., part = 0.35;
+        const bool       grows_few = ratio > 1. && n < few;
         cells.push_back(
-          std::max<unsigned int>(2, std::lround(ratio > 1. && n < few ? std::ceil(n - part) : n)));
+          std::max<unsigned int>(2, std::lround(grows_few ? std::ceil(n - part) : n)));
+        if (grows_few && !first.empty()) // barely finer along one edge, finer along all
+          cells.back() = std::max(cells.back(), static_cast<unsigned int>(first[d]) + 1);
         if (family != Family::faces && family != Family::bonds && family != Family::zone)
           cells.back() = with_points_on_planes(d, cells.back());
       }

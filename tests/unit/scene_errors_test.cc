@@ -211,7 +211,7 @@ Kernel = conica => Kernel | Did you mean 'conical'?
 Kernel exponent = 3 => Kernel exponent | 0, 1 or 2
 Kernel exponent = 1.5 => Kernel exponent | whole number
 Volume fraction = no => Volume fraction | none, linear, exact
-Calibration = x => Calibration | discrete, analytic
+Calibration = x => Calibration | discrete, isotropic, analytic
 Self term = x => Self term | none, paper
 Nodal volume = x => Nodal volume | partial, full
 Layer rows = 0 => Layer rows | 1 or more
