@@ -191,7 +191,8 @@ namespace PeriDeal
         cells.push_back(
           std::max<unsigned int>(2, std::lround(grows_few ? std::ceil(n - part) : n)));
         if (grows_few && !first.empty()) // barely finer along one edge, finer along all
-          cells.back() = std::max(cells.back(), static_cast<unsigned int>(first[d]) + 1);
+          cells.back() =
+            std::max(cells.back(), static_cast<unsigned int>(std::lround(first[d])) + 1);
         if (family != Family::faces && family != Family::bonds && family != Family::zone)
           cells.back() = with_points_on_planes(d, cells.back());
       }
