@@ -186,7 +186,7 @@ namespace PeriDeal
         const double n = std::max(fineness * (box.upper[d] - box.lower[d]) / longest,
                                   (first.empty() ? 2. : first[d]) * std::max(1., ratio));
         // Few cells get more with the others, or nothing is seen of them.
-        constexpr double few = 8., part = 0.35;
+        constexpr double few = 8., part = 1e-9;
         const bool       grows_few = ratio > 1. && n < few;
         cells.push_back(
           std::max<unsigned int>(2, std::lround(grows_few ? std::ceil(n - part) : n)));
