@@ -261,15 +261,28 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Over the volume of the body, of a number of each owned node. Collective. */
+    template <int dim>
+    double sum_of(const Nodes<dim>                              &nodes,
+                  const std::vector<OrdinaryPlasticity::Answer> &answers,
+                  double OrdinaryPlasticity::Answer::*const what)
+    {
+      double sum = 0.;
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        sum += nodes.volume(i) * answers[i].*what;
+      return Utilities::MPI::sum(sum, nodes.communicator());
+    }
+  } // namespace
+
+
   template <int dim>
   double YieldingFamilies<dim>::energy(const Vector &u) const
   {
     if (!knows(u))
       find(u);
-    double sum = 0.;
-    for (unsigned int i = 0; i < states.size(); ++i)
-      sum += families.nodes().volume(i) * trial.answers[i].stored;
-    return Utilities::MPI::sum(sum, families.nodes().communicator());
+    return sum_of(families.nodes(), trial.answers, &OrdinaryPlasticity::Answer::stored);
   }
 
 
@@ -278,10 +291,7 @@ namespace PeriDeal
   {
     if (!knows(u))
       find(u);
-    double sum = 0.;
-    for (unsigned int i = 0; i < states.size(); ++i)
-      sum += families.nodes().volume(i) * trial.answers[i].dissipated;
-    return Utilities::MPI::sum(sum, families.nodes().communicator());
+    return sum_of(families.nodes(), trial.answers, &OrdinaryPlasticity::Answer::dissipated);
   }
 
 
