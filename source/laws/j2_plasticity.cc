@@ -113,17 +113,16 @@ namespace PeriDeal
   }
 
 
-  StressLaw::Response J2Plasticity::update(const Tensor &strain,
-                                           const double *parameters,
-                                           const double *state,
-                                           double       *next,
-                                           Tangent      *tangent) const
+  StressLaw::Response J2Plasticity::update(const Trial &trial, double *next, Tangent *tangent) const
   {
-    const Numbers of{parameters[0], parameters[1], parameters[2], parameters[3]};
-    std::copy_n(state, n_state(), next);
-    Tensor elastic = strain;
+    const Numbers of{trial.parameters[0],
+                     trial.parameters[1],
+                     trial.parameters[2],
+                     trial.parameters[3]};
+    std::copy_n(trial.state, n_state(), next);
+    Tensor elastic = trial.strain;
     for (unsigned int k = 0; k < kappa_at; ++k)
-      elastic.access_raw_entry(k) -= state[k];
+      elastic.access_raw_entry(k) -= trial.state[k];
     return kind == StressState::plane_stress ?
              in_plane_stress(in_plane(elastic), of, next, tangent) :
              in_space(elastic, of, next, tangent);

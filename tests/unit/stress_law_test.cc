@@ -42,7 +42,7 @@ namespace
 
     StressLaw::Response look(const Strain &strain, StressLaw::Tangent *tangent = nullptr)
     {
-      return law.update(strain, parameters.data(), state.data(), next.data(), tangent);
+      return law.update({strain, parameters.data(), state.data()}, next.data(), tangent);
     }
 
     StressLaw::Response go(const Strain &strain)

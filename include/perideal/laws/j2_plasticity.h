@@ -50,11 +50,7 @@ namespace PeriDeal
                                    const double  yield_stress,
                                    const double  hardening) const;
 
-    Response update(const Tensor &strain,
-                    const double *parameters,
-                    const double *state,
-                    double       *next,
-                    Tangent      *tangent) const override;
+    Response update(const Trial &trial, double *next, Tangent *tangent) const override;
 
     std::vector<std::pair<std::string, unsigned int>> shown() const override
     {

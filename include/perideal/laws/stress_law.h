@@ -50,6 +50,15 @@ namespace PeriDeal
       double dissipated = 0.; // since the state that was accepted
     };
 
+    /** What a law is asked about: a strain that is reached straight from the accepted one. */
+    struct Trial
+    {
+      Tensor        strain; // in plane stress what it has out of the plane is not looked at
+      const double *parameters;
+      const double *state;                // the accepted one
+      double        time = 0., step = 0.; // at its end, since the accepted one
+    };
+
     virtual ~StressLaw() = default;
 
     virtual unsigned int n_parameters() const = 0;
@@ -58,19 +67,12 @@ namespace PeriDeal
     virtual unsigned int n_state() const = 0;
 
     /**
-     * The response to a strain that is reached straight from the accepted one. The stress is the
-     * derivative of what is stored and dissipated by the strain.
+     * The stress is the derivative of what is stored and dissipated by the strain.
      *
-     * @param strain  in plane stress what it has out of the plane is not looked at
-     * @param state   the accepted one
-     * @param next    what it becomes if this strain is accepted; another place than @p state
+     * @param next    what the state becomes if this strain is accepted; another place than that is
      * @param tangent the derivative of the stress by the strain; null: not wanted
      */
-    virtual Response update(const Tensor &strain,
-                            const double *parameters,
-                            const double *state,
-                            double       *next,
-                            Tangent      *tangent) const = 0;
+    virtual Response update(const Trial &trial, double *next, Tangent *tangent) const = 0;
 
     /** Numbers of the state that results show, by the name of their field. */
     virtual std::vector<std::pair<std::string, unsigned int>> shown() const

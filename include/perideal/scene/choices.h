@@ -117,7 +117,8 @@ namespace PeriDeal
   enum class ElasticModel
   {
     state_based,
-    bond_based
+    bond_based,
+    correspondence
   };
 
   /** How forces follow from what the body has gone through. */
@@ -127,7 +128,8 @@ namespace PeriDeal
     viscoelastic,
     plastic,
     softening,
-    formula
+    formula,
+    user
   };
 
   /** SofteningCurve. */

@@ -38,6 +38,12 @@ namespace PeriDeal
       return model == ElasticModel::bond_based;
     }
 
+    /** Nodes have strains, from which a law of stresses makes the forces of their bonds. */
+    bool is_correspondence() const
+    {
+      return model == ElasticModel::correspondence;
+    }
+
     /** Strains are those of the deformed bonds. */
     bool has_full_kinematics() const
     {

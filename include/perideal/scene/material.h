@@ -56,6 +56,24 @@ namespace PeriDeal
       std::optional<MaterialProperty> yield_stress; // plastic
       MaterialProperty                hardening;    // of the yield stress over plastic strain
 
+      /** A shared library with a law of stresses. */
+      struct User
+      {
+        std::string         library;
+        std::vector<double> properties;
+        unsigned int        n_states = 0;
+      } user;
+
+      /**
+       * Three axes of symmetry: Young's moduli along them; shear moduli and Poisson ratios of 12,
+       * 13, 23, those of the plane alone where that is enough; by which angles the axes are turned,
+       * in degrees. Empty: the body is isotropic.
+       */
+      struct Orthotropy
+      {
+        std::vector<MaterialProperty> young, shear, poisson, angles;
+      } orthotropy;
+
       /** J2 plasticity. */
       bool yields() const
       {

@@ -5,7 +5,6 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
-#include <perideal/laws/j2_plasticity.h>
 #include <perideal/mesh/node_keys.h>
 #include <perideal/operators/solid/stress_cells.h>
 
@@ -20,32 +19,21 @@ namespace PeriDeal
                                                                const BodyParameters<dim> &body,
                                                                const CutCells<dim>       &cracks)
   {
-    const Material &material = body.material;
-    if (!material.law.yields())
+    PlacedStressLaw<dim> law = stress_law_of(body);
+    if (!law.law)
       return nullptr;
-    const StressState kind       = stress_state_of(dim, body.elasticity.plane);
-    auto              law        = std::make_unique<const J2Plasticity>(kind);
-    const auto        parameters = [&material, &law = *law](const Point<dim> &p) {
-      return law.parameters(material.moduli(p),
-                            material.law.yield_stress->value(p),
-                            material.law.hardening.value(p));
-    };
-    return std::make_unique<StressCells>(dofs,
-                                         std::move(law),
-                                         parameters,
-                                         kind != StressState::plane_stress,
-                                         cracks);
+    const bool projects = stress_state_of(dim, body.elasticity.plane) != StressState::plane_stress;
+    return std::make_unique<StressCells>(dofs, std::move(law), projects, cracks);
   }
 
 
   template <int dim>
-  StressCells<dim>::StressCells(const DoFHandler<dim>           &dofs,
-                                std::unique_ptr<const StressLaw> law,
-                                const Parameters                &parameters,
-                                const bool                       projects,
-                                const CutCells<dim>             &cracks)
+  StressCells<dim>::StressCells(const DoFHandler<dim> &dofs,
+                                PlacedStressLaw<dim>   law,
+                                const bool             projects,
+                                const CutCells<dim>   &cracks)
     : dofs(dofs)
-    , of_points(std::move(law))
+    , of_points(std::move(law.law))
     , cracks(cracks)
     , first(dofs.get_triangulation().n_active_cells(), 0)
     , at{ProjectedStrains<dim>(dofs.get_fe(), projects),
@@ -65,7 +53,7 @@ namespace PeriDeal
           at.strains.reinit(cell);
           for (const auto &place : at.strains.values().get_quadrature_points())
             {
-              const std::vector<double> of_point = parameters(place);
+              const std::vector<double> of_point = law.parameters(place);
               all_parameters.insert(all_parameters.end(), of_point.begin(), of_point.end());
             }
         }
@@ -90,9 +78,9 @@ namespace PeriDeal
         LawPoint &point = at.points[q];
         point.weight =
           (u == nullptr ? 1. : cracks.kept_of_removed(cell)) * at.strains.values().JxW(q);
-        point.response = of_points->update(at.strains.strain(q, at.u),
-                                           of_point + q * of_points->n_parameters(),
-                                           accepted + q * of_points->n_state(),
+        point.response = of_points->update({at.strains.strain(q, at.u),
+                                            of_point + q * of_points->n_parameters(),
+                                            accepted + q * of_points->n_state()},
                                            point.state.data(),
                                            with_tangents ? &point.tangent : nullptr);
       }

@@ -4,13 +4,11 @@
 #pragma once
 
 #include <perideal/base/archive.h>
-#include <perideal/laws/stress_law.h>
 #include <perideal/operators/parts/cut_cells.h>
 #include <perideal/operators/parts/element_matrix.h>
 #include <perideal/operators/solid/projected_strains.h>
-#include <perideal/scene/body_parameters.h>
+#include <perideal/operators/solid/stress_laws.h>
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -42,18 +40,14 @@ namespace PeriDeal
                                                  const BodyParameters<dim>     &body,
                                                  const CutCells<dim>           &cracks);
 
-    /** The parameters of the law at a place. */
-    using Parameters = std::function<std::vector<double>(const dealii::Point<dim> &)>;
-
     /**
      * @param projects the dilatation (ProjectedStrains)
      * @param cracks   like @p dofs to outlive this
      */
-    StressCells(const dealii::DoFHandler<dim>   &dofs,
-                std::unique_ptr<const StressLaw> law,
-                const Parameters                &parameters,
-                const bool                       projects,
-                const CutCells<dim>             &cracks);
+    StressCells(const dealii::DoFHandler<dim> &dofs,
+                PlacedStressLaw<dim>           law,
+                const bool                     projects,
+                const CutCells<dim>           &cracks);
 
     const StressLaw &law() const
     {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <perideal/laws/stress_law.h>
+#include <perideal/scene/body_parameters.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace PeriDeal
+{
+  /** A law of stresses, and its parameters at places of the body. */
+  template <int dim>
+  struct PlacedStressLaw
+  {
+    using Parameters = std::function<std::vector<double>(const dealii::Point<dim> &)>;
+
+    std::unique_ptr<const StressLaw> law; // null: none
+    Parameters                       parameters;
+  };
+
+
+  /**
+   * The law of the scene where it is one of stresses (`Law` in section `Material`); none where it
+   * is linear or one of bonds. The body has to outlive it.
+   */
+  template <int dim>
+  PlacedStressLaw<dim> stress_law_of(const BodyParameters<dim> &body);
+
+  /** The linear law as one of stresses, likewise. */
+  template <int dim>
+  PlacedStressLaw<dim> linear_stress_law(const BodyParameters<dim> &body);
+} // namespace PeriDeal

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/instantiate.h>
+#include <perideal/laws/j2_plasticity.h>
+#include <perideal/laws/linear_stress.h>
+#include <perideal/operators/solid/stress_laws.h>
+
+#include <map>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    PlacedStressLaw<dim> j2_plasticity(const BodyParameters<dim> &body)
+    {
+      const Material &material = body.material;
+      auto law = std::make_unique<const J2Plasticity>(stress_state_of(dim, body.elasticity.plane));
+      const auto parameters = [&material, &law = *law](const Point<dim> &p) {
+        return law.parameters(material.moduli(p),
+                              material.law.yield_stress->value(p),
+                              material.law.hardening.value(p));
+      };
+      return {std::move(law), parameters};
+    }
+
+
+    /** The one list of laws of stresses. */
+    template <int dim>
+    const std::map<SolidLaw, PlacedStressLaw<dim> (*)(const BodyParameters<dim> &)> &makers()
+    {
+      static const std::map<SolidLaw, PlacedStressLaw<dim> (*)(const BodyParameters<dim> &)> list =
+        {{SolidLaw::plastic, j2_plasticity<dim>}};
+      return list;
+    }
+  } // namespace
+
+
+  template <int dim>
+  PlacedStressLaw<dim> stress_law_of(const BodyParameters<dim> &body)
+  {
+    const auto found = makers<dim>().find(body.material.law.kind);
+    return found == makers<dim>().end() ? PlacedStressLaw<dim>() : found->second(body);
+  }
+
+
+  template <int dim>
+  PlacedStressLaw<dim> linear_stress_law(const BodyParameters<dim> &body)
+  {
+    const StressState kind = stress_state_of(dim, body.elasticity.plane);
+    return {std::make_unique<const LinearStress>(),
+            [&material = body.material, kind](const Point<dim> &p) {
+              return LinearStress::parameters(isotropic_stiffness(material.moduli(p), kind));
+            }};
+  }
+
+
+  PERIDEAL_INSTANTIATE_FUNCTION(stress_law_of);
+  PERIDEAL_INSTANTIATE_FUNCTION(linear_stress_law);
+} // namespace PeriDeal
