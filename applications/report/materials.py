@@ -9,13 +9,14 @@ from tables import cell, table
 from words import with_unit
 
 MODULI = ("Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio")
-ELASTIC = MODULI + ("Density", "Thermal expansion", "Fracture energy", "Critical stretch", "Tensile strength",
+ORTHOTROPIC = ("Young moduli", "Shear moduli", "Poisson ratios", "Material angle")
+ELASTIC = MODULI + ORTHOTROPIC + ("Density", "Thermal expansion", "Fracture energy", "Critical stretch", "Tensile strength",
                     "Yield stress", "Hardening modulus")
 DIFFUSING = {"heat": ("Conductivity", "Density", "Heat capacity"),
              "moisture": ("Conductivity", "Saturated concentration", "Density", "Heat capacity"),
              "electricity": ("Conductivity", "Density", "Heat capacity")}
 CALLED = {("moisture", "Conductivity"): "Diffusivity"}
-TRIVIAL = {"Density": "1", "Heat capacity": "1", "Thermal expansion": "0", "Saturated concentration": "1", "Hardening modulus": "0"}
+TRIVIAL = {"Density": "1", "Heat capacity": "1", "Thermal expansion": "0", "Saturated concentration": "1", "Hardening modulus": "0", "Material angle": "0"}
 
 
 def number(text):
@@ -113,7 +114,7 @@ def material_table(run):
     """What each phase is made of; empty where nothing is given."""
     entries = entries_of(run)
     rows = materials(run, entries)
-    decisive = MODULI if run.words.elastic else entries[:1]
+    decisive = MODULI + ORTHOTROPIC[:1] if run.words.elastic else entries[:1]
     if not any(values.get(m) for _, _, values in rows for m in decisive):
         return ""
     columns = [entries_as_cells(values, entries) for _, _, values in rows]

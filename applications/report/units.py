@@ -108,7 +108,8 @@ class Units:
                          ("kN", "mm", "ms"): "kg/mm³"}
             temperature = self.named.get("temperature", "")
             degree = {"C": "K", "degC": "K", "F": "°F"}.get(temperature, temperature)
-            stresses = ("Bulk modulus", "Shear modulus", "Young modulus", "Tensile strength", "Yield stress", "Hardening modulus")
+            stresses = ("Bulk modulus", "Shear modulus", "Young modulus", "Young moduli", "Shear moduli", "Tensile strength", "Yield stress",
+                        "Hardening modulus")
             return {**dict.fromkeys(stresses, self.stress),
                     "Density": densities.get((self.named.get("force"), length, time), ""),
                     "Thermal expansion": degree and f"1/{degree}",

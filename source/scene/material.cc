@@ -5,6 +5,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/material.h>
+#include <perideal/scene/orthotropy.h>
 #include <perideal/scene/vector_conditions.h>
 
 #include <array>
@@ -66,6 +67,9 @@ namespace PeriDeal
     entry("Poisson ratio") =
       "Contraction of a bar per its extension" + formula +
       " Greater than -1 and less than 0.5; in plane stress and in bars it may be 0.5." + two;
+    for (const OrthotropicEntry &of : orthotropic_entries())
+      declare(of.name, EntryType::list, of.name == "Material angle" ? "0" : "", of.unit) =
+        of.words + " Numbers or formulas of x, y, z; with `Law = linear` and finite elements.";
     entry("Thermal expansion", "0") =
       "Strain per `Temperature change` (section `Elasticity`)" + formula;
     entry("Fracture energy") =
@@ -328,7 +332,10 @@ namespace PeriDeal
       error(
         "Fracture energy",
         "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
-    if (physics == Physics::elasticity)
+    law.orthotropy = parse_orthotropy(*this, physics, dim, plane);
+    if (!law.orthotropy.young.empty()) // no number: nobody may take it for uniform and isotropic
+      given.properties.fill(MaterialProperty(Expression("1 + 0*x", where("Young moduli"))));
+    else if (physics == Physics::elasticity)
       parse_moduli(dim, plane);
     else
       for (const std::string entry :
@@ -536,6 +543,8 @@ namespace PeriDeal
   template <int dim>
   Moduli Material::moduli(const dealii::Point<dim> &p) const
   {
+    if (!law.orthotropy.young.empty())
+      return mean_moduli(law.orthotropy, p);
     const double a = given.properties[0].value(p), b = given.properties[1].value(p);
     // Constant ones have been checked.
     const std::string fault = uniform_moduli() ? "" : given.fault(a, b);

@@ -3,6 +3,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/orthotropy.h>
 #include <perideal/scene/phases.h>
 #include <perideal/scene/vector_conditions.h>
 
@@ -313,6 +314,10 @@ namespace PeriDeal
         (entry.name == "Conductivity" ? "Thermal conductivity" : entry.name) +
         " of each phase: `name: formula of x, y, z" + (entry.with_temperature ? ", T" : "") +
         "`, several separated by `;`. A phase that is not named here has the value of section `Material`.";
+    for (const OrthotropicEntry &entry : orthotropic_entries())
+      declare(entry.name, EntryType::list, "", entry.unit) =
+        entry.name +
+        " of each phase: `name: list of numbers or formulas of x, y, z`, several separated by `;`, as many numbers as section `Material` has. A phase that is not named here has those of section `Material`.";
     parse();
   }
 
@@ -383,6 +388,15 @@ namespace PeriDeal
           has_material[k] = has_material[k] || (values[k].has_value() &&
                                                 (elastic ? entry.elasticity : entry.diffusion));
       }
+    for (const OrthotropicEntry &entry : orthotropic_entries())
+      for (const std::string &piece : split_list(text(entry.name), ';'))
+        {
+          const auto found = std::find(regions->names.begin(),
+                                       regions->names.end(),
+                                       name_and_value(piece, where(entry.name)).first);
+          if (elastic && found != regions->names.end())
+            has_material[found - regions->names.begin()] = true;
+        }
     // What an image shows need not have a material of its own.
     for (std::size_t k = 0; k < regions->regions.size(); ++k)
       if (!has_material[k])

@@ -575,6 +575,8 @@ namespace PeriDeal
         return "motion with cracks, or with a horizon that is a length";
       if (scene.material.law.kind != SolidLaw::linear)
         return "another 'Law' than 'linear' (section 'Material')";
+      if (!scene.material.law.orthotropy.young.empty())
+        return "orthotropic bodies ('Young moduli' in section 'Material')";
       if (!scene.time.steady && scene.deforms && !moves &&
           (scene.cracks.change() || scene.peridynamics.horizon > 0.))
         return "bodies at rest whose loads change with time, with cracks that grow or a horizon that is a length";
@@ -671,11 +673,37 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    template <int dim>
+    void refuse_orthotropic_body(const BodyParameters<dim> &body,
+                                 const bool                 by_elements,
+                                 const bool                 coupled)
+    {
+      if (body.material.law.orthotropy.young.empty())
+        return;
+      const auto refuse = [&](const bool is_so, const std::string &why) {
+        body.material.refuse(is_so, "Young moduli", why);
+      };
+      refuse(
+        !by_elements || coupled,
+        "makes the body orthotropic, which is for 'Models = finite elements': bonds have two moduli. Use that, or give 'Young modulus' and 'Poisson ratio'.");
+      refuse(
+        body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
+        "makes the body orthotropic, which knows no 'Temperature change' (section 'Elasticity'). Leave one of them out.");
+      refuse(
+        body.elasticity.absolute_reference.has_value(),
+        "makes the body orthotropic, which knows no 'Heat of deformation' (section 'Elasticity'). Leave one of them out.");
+    }
+  } // namespace
+
+
   template <int dim>
   void refuse_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled)
   {
     const Material &material = body.material;
     const SolidLaw  kind     = material.law.kind;
+    refuse_orthotropic_body(body, by_elements, coupled);
     if (kind == SolidLaw::linear)
       return;
     body.coupling.refuse(

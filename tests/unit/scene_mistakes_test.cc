@@ -243,6 +243,38 @@ Material/Law=formula & Material/Bond force=s & Models=finite elements & Elastici
   }
 
 
+  TEST(SceneMistakes, of_orthotropic_bodies)
+  {
+    expect_said(elastic_and({"Models=finite elements",
+                             "Material/Bulk modulus=",
+                             "Material/Shear modulus=",
+                             "Material/Young modulus=",
+                             "Material/Poisson ratio=",
+                             "Material/Young moduli=3, 1",
+                             "Material/Shear moduli=1",
+                             "Material/Poisson ratios=0",
+                             "Elasticity/Plane=stress"}),
+                R"(
+Material/Young moduli= => 'Shear moduli' | 'Young moduli' | is empty
+Material/Young modulus=1 => 'Young modulus' | isotropic | 'Young moduli'
+Material/Young moduli=3 => 'Young moduli' | '3' | E1, E2 or E1, E2, E3
+Material/Young moduli=3, t => 'Young moduli' | 't' | x, y, z
+Material/Young moduli=3, -1 => 'Young moduli' | E2 | -1 | greater than 0
+Material/Shear moduli= => 'Shear moduli' | G12
+Material/Shear moduli=0 => 'Shear moduli' | G12 | 0 | greater than 0
+Material/Poisson ratios=1.8 => 'Poisson ratios' | nu12 is 1.8 | sqrt(E1/E2) = 1.73205
+Material/Young moduli=1, 1, 1 & Material/Shear moduli=1, 1, 1 & Material/Poisson ratios=0.6, 0.6, 0.6 => 'Poisson ratios' | nu12 nu13 nu23 | greater than 0
+Material/Material angle=1, 2 => 'Material angle' | one angle
+Elasticity/Plane=strain => 'Young moduli' | '3, 1' | E1, E2, E3
+Material/Phases/Young moduli=core: 1, 2 => 'Young moduli' | no phase 'core'
+Material/Law=plastic & Material/Yield stress=1 & Elasticity/Solver=newton => 'Young moduli' | 'Law = linear' | 'plastic'
+Models=peridynamics => 'Young moduli' | 'Models = finite elements'
+Models=coupled & Coupling/Zone=everywhere => 'Young moduli' | 'Models = finite elements'
+Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Young moduli' | 'Temperature change'
+)");
+  }
+
+
   TEST(SceneMistakes, of_elements_that_yield)
   {
     expect_said(elastic_and({"Models=finite elements",

@@ -636,7 +636,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::find_forces(Vector &y, const Vector &u, const double t) const
   {
-    if (cells.stresses)
+    if (cells.stresses && nonlinear())
       {
         const WithGhosts ghosts(u);
         return cells.stresses->find_forces(y, hanging, u);
@@ -690,7 +690,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::accept(const Vector &u, const double t)
   {
-    if (!cells.stresses && !law)
+    if (!nonlinear() && !law)
       return;
     const WithGhosts ghosts(u);
     if (cells.stresses)
@@ -718,7 +718,7 @@ namespace PeriDeal
   template <int dim>
   double ElasticElements<dim>::energy(const Vector &u) const
   {
-    if (cells.stresses)
+    if (cells.stresses && nonlinear())
       {
         const WithGhosts ghosts(u);
         return cells.stresses->energy(u) + contact->energy(u);

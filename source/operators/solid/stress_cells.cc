@@ -22,7 +22,9 @@ namespace PeriDeal
     PlacedStressLaw<dim> law = stress_law_of(body);
     if (!law.law)
       return nullptr;
-    const bool projects = stress_state_of(dim, body.elasticity.plane) != StressState::plane_stress;
+    // A body that does not flow is what it is without the projection.
+    const bool projects = body.material.law.kind != SolidLaw::linear &&
+                          stress_state_of(dim, body.elasticity.plane) != StressState::plane_stress;
     return std::make_unique<StressCells>(dofs, std::move(law), projects, cracks);
   }
 

@@ -5,6 +5,7 @@
 #include <perideal/laws/j2_plasticity.h>
 #include <perideal/laws/linear_stress.h>
 #include <perideal/operators/solid/stress_laws.h>
+#include <perideal/scene/orthotropy.h>
 
 #include <map>
 
@@ -42,6 +43,8 @@ namespace PeriDeal
   template <int dim>
   PlacedStressLaw<dim> stress_law_of(const BodyParameters<dim> &body)
   {
+    if (body.material.law.kind == SolidLaw::linear && !body.material.law.orthotropy.young.empty())
+      return linear_stress_law(body);
     const auto found = makers<dim>().find(body.material.law.kind);
     return found == makers<dim>().end() ? PlacedStressLaw<dim>() : found->second(body);
   }
@@ -53,7 +56,12 @@ namespace PeriDeal
     const StressState kind = stress_state_of(dim, body.elasticity.plane);
     return {std::make_unique<const LinearStress>(),
             [&material = body.material, kind](const Point<dim> &p) {
-              return LinearStress::parameters(isotropic_stiffness(material.moduli(p), kind));
+              const Material::Law::Orthotropy &orthotropy = material.law.orthotropy;
+              if (orthotropy.young.empty())
+                return LinearStress::parameters(isotropic_stiffness(material.moduli(p), kind));
+              const StressLaw::Tangent C = orthotropic_stiffness(orthotropy, p);
+              return LinearStress::parameters(
+                kind == StressState::plane_stress ? in_plane_stress(C) : C);
             }};
   }
 

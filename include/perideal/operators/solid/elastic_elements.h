@@ -81,7 +81,8 @@ namespace PeriDeal
 
     bool nonlinear() const override
     {
-      return cells.stresses || (law && !law->nodal.steps->is_linear());
+      return (cells.stresses && body.material.law.kind != SolidLaw::linear) ||
+             (law && !law->nodal.steps->is_linear());
     }
 
     void   linearize(const Vector &u) override;

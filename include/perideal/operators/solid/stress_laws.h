@@ -26,8 +26,9 @@ namespace PeriDeal
 
 
   /**
-   * The law of the scene where it is one of stresses (`Law` in section `Material`); none where it
-   * is linear or one of bonds. The body has to outlive it.
+   * The law of the scene where it is one of stresses (`Law` in section `Material`), the linear one
+   * of an orthotropic body among them; none where it is linear and isotropic or one of bonds. The
+   * body has to outlive it.
    */
   template <int dim>
   PlacedStressLaw<dim> stress_law_of(const BodyParameters<dim> &body);
