@@ -81,7 +81,7 @@ namespace PeriDeal
     const std::string calibration = text("Calibration");
     sampling.calibration          = calibration == "isotropic" ? Calibration::isotropic :
                                     calibration == "analytic"  ? Calibration::analytic :
-                                                                Calibration::discrete; // `auto`: Scene
+                                                                 Calibration::discrete;
     kernel_exponent               = physics == Physics::elasticity ? 0 : 2;
     if (const std::string &given = text("Kernel exponent"); given != "auto")
       {

@@ -268,7 +268,7 @@ namespace PeriDeal
     {
       constexpr double fewest = 2., most_oblong = 1.5, slack = 1e-6; // test Laws.IsotropicFamilies
       if (dim == 1 || !scene.deforms || scene.peridynamics.text("Calibration") != "auto" ||
-          !scene.domain.has_lattice() || scene.material.breaks() || scene.cracks.change())
+          !scene.domain.has_lattice() || scene.material.breaks())
         return false;
       const Tensor<1, dim> h       = scene.domain.spacing();
       const double         longest = *std::max_element(h.begin_raw(), h.end_raw());

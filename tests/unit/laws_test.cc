@@ -331,7 +331,7 @@ TEST(Laws, IsotropicFamilies)
 }
 
 
-// Where `Calibration = auto` takes them (Scene): two spacings along the longest edge, edges 1 : 1.5.
+// Where `Calibration = auto` takes them: two spacings along the longest edge, edges 1 : 1.5.
 TEST(Laws, IsotropicFamiliesOfTheDefault)
 {
   const auto has = [](const auto &h, const double m) {
