@@ -546,6 +546,8 @@ namespace PeriDeal
         return "prescribed cracks that grow beside bonds that break ('Growth' in section 'Cracks')";
       if (scene.material.scatter)
         return "strengths that scatter from node to node, another body on each lattice ('Weibull modulus' in section 'Material')";
+      if (!scene.material.law.interfaces.empty())
+        return "interfaces with a fracture energy of their own ('Interfaces' in section 'Material')";
       if (is_long)
         return "";
       if (!scene.material.uniform_moduli())
