@@ -95,7 +95,7 @@ namespace PeriDeal
     declare("Bond force", EntryType::formula, "", "1") =
       "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0.";
     declare("Interfaces", EntryType::list, "", "energy/length^2, force/length^2") =
-      "Elasticity: what breaks between two phases of `Phases`, `name/name: fracture energy G`, with `Law = softening` also `, tensile strength f`; several separated by `;`. All bonds that lead from one to the other have these in place of those of the phases. `rest` is what no region holds. Two phases may have the same moduli: a weak plane in one material.";
+      "Elasticity: what breaks between two phases of `Phases`, `name/name: fracture energy G`, with `Law = softening` also `, tensile strength f`; several separated by `;`. All bonds that lead from one to the other have these in place of those of the phases. `elsewhere` is what no region holds. Two phases may have the same moduli: a weak plane in one material.";
     declare("Weibull modulus", EntryType::text, "", "1") =
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
     declare("Strength seed", EntryType::text) =
@@ -197,7 +197,7 @@ namespace PeriDeal
     {
       std::vector<Material::Law::Interface> interfaces;
       const std::string                     entry = "Interfaces", energy = "fracture energy",
-                        strength = "tensile strength", rest = "rest";
+                        strength = "tensile strength", none = "elsewhere";
       if (!material.is_given(entry))
         return interfaces;
       material.refuse(
@@ -205,7 +205,7 @@ namespace PeriDeal
         entry,
         "is for bonds that break: give 'Fracture energy' or 'Critical stretch' of the phases, too.");
       std::vector<std::string> names = material.phases.all().names;
-      names.push_back(rest);
+      names.push_back(none);
       const auto phase_of = [&](const std::string &name) {
         const unsigned int k = choice_of(unquoted(trimmed(name)), names, material.where(entry));
         return k + 1 == names.size() ? -1 : static_cast<int>(k);

@@ -257,24 +257,6 @@ namespace PeriDeal
                              pd.sampling.self_term == SelfTerm::none && !scene.domain.has_voids());
       return complete || !runs(scene, ModelKind::peridynamics);
     }
-
-
-    /**
-     * Whether `Calibration = auto` is `isotropic`: for solids on lattices whose bonds stay and are
-     * enough for it (doc/elasticity.md).
-     */
-    template <int dim>
-    bool is_isotropic_by_itself(const Scene<dim> &scene)
-    {
-      constexpr double fewest = 2., most_oblong = 1.5, slack = 1e-6; // test Laws.IsotropicFamilies
-      if (dim == 1 || !scene.deforms || scene.peridynamics.text("Calibration") != "auto" ||
-          !scene.domain.has_lattice() || scene.material.breaks())
-        return false;
-      const Tensor<1, dim> h       = scene.domain.spacing();
-      const double         longest = *std::max_element(h.begin_raw(), h.end_raw());
-      return scene.horizon() >= fewest * longest * (1. - slack) &&
-             longest <= most_oblong * *std::min_element(h.begin_raw(), h.end_raw()) * (1. + slack);
-    }
   } // namespace
 
 
@@ -302,8 +284,7 @@ namespace PeriDeal
                                    !this->obstacle_to_bonds_on_elements().first.empty() ?
                                  BoundaryTreatment::none :
                                  BoundaryTreatment::exchange;
-    if (is_isotropic_by_itself(*this))
-      peridynamics.sampling.calibration = Calibration::isotropic;
+    peridynamics.sampling.calibration = calibration_of(*this);
     if (!this->deforms && peridynamics.surface_correction == SurfaceCorrection::automatic)
       peridynamics.surface_correction =
         is_scaled_by_itself(*this) ? SurfaceCorrection::crack_scaling : SurfaceCorrection::none;

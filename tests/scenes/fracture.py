@@ -124,6 +124,39 @@ def cantilever():
     table.show()
 
 
+GLUED = """
+set Title     = Glued bar that softens
+set Dimension = 2
+set Physics   = elasticity
+set Models    = peridynamics
+subsection Domain
+  set Upper corner = 100, 20
+  set Cells        = 20, 4
+end
+subsection Material
+  set Young modulus    = 37000
+  set Poisson ratio    = 1/3
+  set Law              = softening
+  set Tensile strength = 3.9
+  set Fracture energy  = 0.1432
+  set Interfaces       = left/elsewhere: fracture energy 0.05, tensile strength 2
+  subsection Phases
+    set Regions       = left: 50.1 - x
+    set Young modulus = left: 37000
+  end
+end
+subsection Boundary conditions
+  set Displacement = left: 0, 0 ; right: 0.3*t, free
+end
+subsection Elasticity
+  set Solver = newton
+end
+subsection Time
+  set Time step = 0.01
+end
+"""
+
+
 def interfaces():
     """A crack runs along the interface of two plies of one material at the energy of the interface, and no bond within them breaks."""
     table = Comparison("Delamination, m = 4")
@@ -148,14 +181,18 @@ def interfaces():
     table.add("energy dissipated, two processes", two.total(DISSIPATED, PD, time=1), run.total(DISSIPATED, PD, time=1), relative=1e-9)
     # A uniform body whose interface is as tough as itself breaks as without it.
     same, none = (run_scene(scene, {**QUIET, "Material/Interfaces": text, "Material/Fracture energy": "0.01", "Time/End time": "0.6"})
-                  for text in ("rest/upper: fracture energy 0.01", ""))
+                  for text in ("elsewhere/upper: fracture energy 0.01", ""))
     table.add("an interface like the body", same.total(DISSIPATED, PD, time=0.6), none.total(DISSIPATED, PD, time=0.6), relative=1e-9)
+    # Bonds that soften: the bar bears what its glue does, and gives off the energy of that.
+    glued = run_scene(GLUED, QUIET)
+    table.add("glue that softens: strength of a bar", largest(glued, "force on right in x") / 20 / 2, 0.95, absolute=0.05)
+    table.add("its energy", glued.total(DISSIPATED, PD, time=1) / 20 / 0.05, 1, absolute=0.06)
     table.show()
-    for text, words in (("upper/lower: fracture energy 1", ("'Interfaces' in section 'Material'", "'lower'", "upper, rest")),
+    for text, words in (("upper/lower: fracture energy 1", ("'Interfaces' in section 'Material'", "'lower'", "upper, elsewhere")),
                         ("upper/upper: fracture energy 1", ("two different phases",)), ("upper: fracture energy 1", ("'name/name'",)),
-                        ("upper/rest: tensile strength 1", ("'fracture energy'",)), ("upper/rest: fracture energy -1", ("greater than 0",)),
-                        ("upper/rest: energy 1", ("fracture energy NUMBER",)), ("upper/rest: fracture energy 1, tensile strength 2", ("'Law = softening'",)),
-                        ("upper/rest: fracture energy 1 ; rest/upper: fracture energy 2", ("twice",))):
+                        ("upper/elsewhere: tensile strength 1", ("'fracture energy'",)), ("upper/elsewhere: fracture energy -1", ("greater than 0",)),
+                        ("upper/elsewhere: energy 1", ("fracture energy NUMBER",)), ("upper/elsewhere: fracture energy 1, tensile strength 2", ("'Law = softening'",)),
+                        ("upper/elsewhere: fracture energy 1 ; elsewhere/upper: fracture energy 2", ("twice",))):
         check_message(run_scene(scene, {"Material/Interfaces": text}, expect_error=True), *words)
 
 
