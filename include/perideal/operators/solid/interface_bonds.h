@@ -31,9 +31,10 @@ namespace PeriDeal
         }
     }
 
+    /** The same on all processes, also on one without nodes. */
     bool any() const
     {
-      return !phases.empty();
+      return !numbers.empty();
     }
 
     static constexpr int none = -1;
