@@ -113,7 +113,8 @@ def arguments_of(overrides: Overrides) -> list:
 
 def message_of(answer: Answer) -> str:
     """The program's own message; where it has none, all that it has said."""
-    found = re.search(r"^perideal: (?:error: )?(.*)\Z", answer.errors, re.MULTILINE | re.DOTALL)
+    # Behind it Open MPI 5 has words of its own: lines that name a machine and a process, and blocks between lines of dashes.
+    found = re.search(r"^perideal: (?:error: )?(.*?)(?=^\[[^\]\s]+:\d+\] |^-{60,}$|\Z)", answer.errors, re.MULTILINE | re.DOTALL)
     return (found.group(1) if found else answer.errors or answer.output).strip()
 
 

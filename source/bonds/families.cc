@@ -8,6 +8,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/bonds/boundary_images.h>
 #include <perideal/bonds/families.h>
+#include <perideal/scene/rules.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,14 +35,16 @@ namespace PeriDeal
     }
 
 
-    KernelParameters kernel_parameters(const Peridynamics &p, const double horizon)
+    template <int dim>
+    KernelParameters kernel_parameters(const BodyParameters<dim> &body)
     {
+      const Peridynamics &p = body.peridynamics;
       return {p.kernel,
               p.kernel_exponent,
               p.sampling.volume_fraction,
-              p.sampling.calibration,
+              calibration_of(body),
               p.sampling.self_term,
-              horizon};
+              body.horizon()};
     }
 
 
@@ -58,9 +61,7 @@ namespace PeriDeal
   template <int dim>
   KernelWeights<dim> kernel_weights(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
   {
-    return {kernel_parameters(body.peridynamics, body.horizon()),
-            lattice_spacing(nodes),
-            nodes.smallest_spacing()};
+    return {kernel_parameters(body), lattice_spacing(nodes), nodes.smallest_spacing()};
   }
 
 

@@ -95,7 +95,7 @@ namespace PeriDeal
              ", and a body pulled along " + "xyz"[axis] + " is " + rounded_text(young) +
              " times as stiff as it should be. " +
              (oblong ? "Cells as long as wide ('Cells' in section 'Domain'), or" :
-                       "'Kernel exponent = 0' in section 'Peridynamics' and") +
+                       "'Calibration = isotropic' in section 'Peridynamics' and") +
              " a larger 'Horizon ratio' bring both near 1.";
     }
 

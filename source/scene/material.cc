@@ -8,6 +8,7 @@
 #include <perideal/scene/orthotropy.h>
 #include <perideal/scene/vector_conditions.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -97,6 +98,8 @@ namespace PeriDeal
       "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with exp(-t/time). A time is that of the section `Time`.";
     declare("Bond force", EntryType::formula, "", "1") =
       "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0.";
+    declare("Interfaces", EntryType::list, "", "energy/length^2, force/length^2") =
+      "Elasticity: what breaks between two phases of `Phases`, `name/name: fracture energy G`, with `Law = softening` also `, tensile strength f`; several separated by `;`. All bonds that lead from one to the other have these in place of those of the phases. `elsewhere` is what no region holds. Two phases may have the same moduli: a weak plane in one material.";
     declare("Weibull modulus", EntryType::text, "", "1") =
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
     declare("Strength seed", EntryType::text) =
@@ -175,6 +178,83 @@ namespace PeriDeal
         Scatter{parse_number(text("Weibull modulus"), where("Weibull modulus")),
                 parse_whole_number(text("Strength seed"), where("Strength seed"), 2147483647u)};
   }
+
+
+  namespace
+  {
+    /** "fracture energy 10", in the text of an interface. */
+    std::optional<double> value_behind(const std::string &name,
+                                       const std::string &text,
+                                       const std::string &where)
+    {
+      if (text.compare(0, name.size(), name) != 0)
+        return {};
+      const double value = parse_number(trimmed(text.substr(name.size())), where);
+      if (!(value > 0.))
+        entry_error(where, "found '" + text + "', needs a number greater than 0.");
+      return value;
+    }
+
+
+    /** Interfaces of phases that have been read, as have the entries of bonds. Throws UserError. */
+    std::vector<Material::Law::Interface> parse_interfaces(const Material &material)
+    {
+      std::vector<Material::Law::Interface> interfaces;
+      const std::string                     entry = "Interfaces", energy = "fracture energy",
+                        strength = "tensile strength", none = "elsewhere";
+      if (!material.is_given(entry))
+        return interfaces;
+      material.refuse(
+        !material.fracture_energy && !material.critical_stretch,
+        entry,
+        "is for bonds that break: give 'Fracture energy' or 'Critical stretch' of the phases, too.");
+      std::vector<std::string> names = material.phases.all().names;
+      names.push_back(none);
+      const auto phase_of = [&](const std::string &name) {
+        const unsigned int k = choice_of(unquoted(trimmed(name)), names, material.where(entry));
+        return k + 1 == names.size() ? -1 : static_cast<int>(k);
+      };
+      for (const std::string &piece : split_list(material.text(entry), ';'))
+        {
+          const auto [pair, values] = name_and_value(piece, material.where(entry));
+          const auto of_pair        = split_list(pair, '/');
+          material.refuse(of_pair.size() != 2,
+                          entry,
+                          "found '" + pair + "', needs two phases, 'name/name'.");
+          Material::Law::Interface found{{phase_of(of_pair[0]), phase_of(of_pair[1])}, 0., {}};
+          material.refuse(found.phases[0] == found.phases[1],
+                          entry,
+                          "found '" + pair + "', needs two different phases.");
+          for (const Material::Law::Interface &other : interfaces)
+            material.refuse(
+              std::is_permutation(other.phases.begin(), other.phases.end(), found.phases.begin()),
+              entry,
+              "has '" + pair + "' twice.");
+          for (const std::string &value : split_list(values, ','))
+            if (const auto G = value_behind(energy, value, material.where(entry)))
+              found.fracture_energy = *G;
+            else if (const auto f = value_behind(strength, value, material.where(entry)))
+              found.tensile_strength = f;
+            else
+              entry_error(material.where(entry),
+                          "found '" + value + "', knows '" + energy + " NUMBER' and '" + strength +
+                            " NUMBER'.");
+          material.refuse(found.fracture_energy == 0.,
+                          entry,
+                          "has no '" + energy + "' for '" + pair + "'.");
+          material.refuse(material.law.softens() != found.tensile_strength.has_value(),
+                          entry,
+                          material.law.softens() ?
+                            "has no '" + strength + "' for '" + pair +
+                              "', which 'Law = softening' needs." :
+                            "has a '" + strength + "' for '" + pair +
+                              "', which is for 'Law = softening'; 'Law' is '" +
+                              material.text("Law") + "'. Leave it out.");
+          interfaces.push_back(found);
+        }
+      return interfaces;
+    }
+  } // namespace
 
 
   namespace
@@ -323,11 +403,12 @@ namespace PeriDeal
     if (fracture_energy && critical_stretch)
       error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
-    for (const std::string entry : {"Law", "Relaxation", "Softening", "Bond force"})
+    for (const std::string entry : {"Law", "Relaxation", "Softening", "Bond force", "Interfaces"})
       refuse_unless_elastic(entry, physics);
     parse_law(*this, law);
     refuse_softening(*this);
     refuse_plastic(*this);
+    law.interfaces = parse_interfaces(*this);
     if (law.kind == SolidLaw::formula && fracture_energy)
       error(
         "Fracture energy",

@@ -21,12 +21,13 @@ namespace PeriDeal
       "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.";
     declare(sampling.volume_fraction, "Volume fraction", "linear", {"none", "linear", "exact"}) =
       "Share of a neighbour's volume that counts: all of it for r <= delta (none); a linear ramp one spacing wide about r = delta; or the exact part of its lattice cell within the horizon.";
-    declare(sampling.calibration,
-            "Calibration",
-            "discrete",
-            {"discrete", "isotropic", "analytic"}) =
-      "What makes a linear field conduct Conductivity times its gradient: the sum over a full family of the lattice (exact at any m), or the integral (low by 7 % at m = 3 in 2D). `isotropic`, on lattices: the sum, by factors that depend on the direction of a bond, with which "
-      "solids have their moduli in all directions.";
+    declare("Calibration",
+            EntryType::choice,
+            "auto",
+            "",
+            {"auto", "discrete", "isotropic", "analytic"}) =
+      "What makes a linear field conduct Conductivity times its gradient: the sum over a full family of the lattice (`discrete`, exact at any m), or the integral (`analytic`, low by 7 % at m = 3 in 2D). `isotropic`, on lattices: the sum, by factors that depend on the direction of a bond, with which "
+      "solids have their moduli in all directions. `auto` is `isotropic` for solids on lattices whose bonds do not break, else `discrete`.";
     declare(sampling.self_term, "Self term", "none", {"none", "paper"}) =
       "The term of a node with itself as published by Bobaru and Duangpanya; inflates the conductivity.";
     declare(sampling.nodal_volume, "Nodal volume", "partial", {"partial", "full"}) =
@@ -77,7 +78,11 @@ namespace PeriDeal
     refuse(horizon > 0. && is_given("Horizon ratio"),
            "Horizon",
            "'Horizon ratio' is given, too: give one of the two.");
-    kernel_exponent = physics == Physics::elasticity ? 0 : 2;
+    const std::string calibration = text("Calibration");
+    sampling.calibration          = calibration == "isotropic" ? Calibration::isotropic :
+                                    calibration == "analytic"  ? Calibration::analytic :
+                                                                 Calibration::discrete;
+    kernel_exponent               = physics == Physics::elasticity ? 0 : 2;
     if (const std::string &given = text("Kernel exponent"); given != "auto")
       {
         if (given != "0" && given != "1" && given != "2")

@@ -546,6 +546,8 @@ namespace PeriDeal
         return "prescribed cracks that grow beside bonds that break ('Growth' in section 'Cracks')";
       if (scene.material.scatter)
         return "strengths that scatter from node to node, another body on each lattice ('Weibull modulus' in section 'Material')";
+      if (!scene.material.law.interfaces.empty())
+        return "interfaces with a fracture energy of their own ('Interfaces' in section 'Material')";
       if (is_long)
         return "";
       if (!scene.material.uniform_moduli())
@@ -753,6 +755,25 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  Calibration calibration_of(const BodyParameters<dim> &body)
+  {
+    constexpr double    fewest = 2., most_oblong = 1.5, slack = 1e-6; // test Laws.IsotropicFamilies
+    const Peridynamics &pd = body.peridynamics;
+    if (dim == 1 || !body.deforms || pd.text("Calibration") != "auto" ||
+        !body.domain.has_lattice() || body.material.breaks())
+      return pd.sampling.calibration;
+    const dealii::Tensor<1, dim> h       = body.domain.spacing();
+    const double                 longest = *std::max_element(h.begin_raw(), h.end_raw()),
+                 shortest                = *std::min_element(h.begin_raw(), h.end_raw());
+    return body.horizon() >= fewest * longest * (1. - slack) &&
+               longest <= most_oblong * shortest * (1. + slack) ?
+             Calibration::isotropic :
+             pd.sampling.calibration;
+  }
+
+
+  PERIDEAL_INSTANTIATE_FUNCTION(calibration_of);
   PERIDEAL_INSTANTIATE_FUNCTION(refuse_law);
   PERIDEAL_INSTANTIATE_FUNCTION(refuse_cracks);
   PERIDEAL_INSTANTIATE_FUNCTION(refuse_families);

@@ -284,6 +284,7 @@ namespace PeriDeal
                                    !this->obstacle_to_bonds_on_elements().first.empty() ?
                                  BoundaryTreatment::none :
                                  BoundaryTreatment::exchange;
+    peridynamics.sampling.calibration = calibration_of(*this);
     if (!this->deforms && peridynamics.surface_correction == SurfaceCorrection::automatic)
       peridynamics.surface_correction =
         is_scaled_by_itself(*this) ? SurfaceCorrection::crack_scaling : SurfaceCorrection::none;

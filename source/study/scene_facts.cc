@@ -74,7 +74,9 @@ namespace PeriDeal
               {"kernel exponent", bonds.kernel_exponent},
               {"volume fraction", name_of(bonds.sampling.volume_fraction)},
               {"calibration",
-               bonds.sampling.calibration == Calibration::analytic ? "analytic" : "discrete"},
+               bonds.sampling.calibration == Calibration::analytic  ? "analytic" :
+               bonds.sampling.calibration == Calibration::isotropic ? "isotropic" :
+                                                                      "discrete"},
               {"m", ratio},
               {"break", scene.material.breaks()}};
     }

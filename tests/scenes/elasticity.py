@@ -47,9 +47,8 @@ def bars():
     table.add_limit("1D, PD, families end at the ends: relative excess of the displacement", ends[0], 0.0215)  # measured: 0.0143
     table.add("1D, PD, families end: ratio of the excess on cells of half the size", ends[0] / ends[1], 2, relative=1e-6)
     balanced(table, run)
-    # Moduli inside; measured: 1.0 % and 0.0071, 0.53 % and 0.0003; on a full lattice 1.0102 E,
-    # 0.2929 and 1.0056 E, 0.2989.
-    for name, dim, of_young, of_poisson in (("bar_2d.prm", 2, 0.0155, 0.0105), ("bar_3d.prm", 3, 0.008, 0.0005)):
+    # Moduli inside; measured: 2e-6 and 9e-7, 2.7e-4 and 8.1e-4 beside ends that are held.
+    for name, dim, of_young, of_poisson in (("bar_2d.prm", 2, 1e-5, 1e-5), ("bar_3d.prm", 3, 4e-4, 1.2e-3)):
         run = run_quietly(name)
         far = [2, 1, 1][:dim]
         for column, value in zip(("ux", "uy", "uz"), (0.01, -0.0015, -0.0015)[:dim]):
@@ -144,7 +143,7 @@ def bore():
             table.add(f"{model}: sxx at y = {y:g}", solid.probe(model, (0, y, 0.25), column="sxx"), wanted[model], relative=bound)
         gap = bare.probe(PD, (0, y, 0.25), column="sxx") / wanted[PD] - 1
         check(gap > 0.045, f"where families end at its planes of symmetry the slice is too stiff at y = {y:g}: {gap:.3g}")  # measured: 11, 10, 6.9 %
-        table.add(f"no extra layers: sxx at y = {y:g}", completed.probe(PD, (0, y, 0.25), column="sxx"), wanted[PD], relative=0.0115)  # measured: 0.8, 0.1 and 0.6 %
+        table.add(f"no extra layers: sxx at y = {y:g}", completed.probe(PD, (0, y, 0.25), column="sxx"), wanted[PD], relative=0.018)  # measured: 1.2, 0.5 and 0.05 %
     balanced(table, solid)
     table.show()
 
@@ -216,8 +215,8 @@ def laws():
         for t in times[1:]:
             grown = runs[1].probe(model, (2, 1), time=t, column="ux") / runs[1].probe(model, (2, 1), time=0, column="ux")
             table.add(f"{model}: growth of the extension until t = {t}", grown, creep(t) / creep(0), relative=bound)
-    # Of stress what equilibrium says, and out of the plane what the bulk modulus, which does not relax, does. Measured, over 0.01: 7e-5 and 7e-2.
-    for model, bound in ((FE, 1e-8), (PD, 5e-3), ("coupled", 0.08)):
+    # Of stress what equilibrium says, and out of the plane what the bulk modulus, which does not relax, does. Measured, over 0.01: 7e-5 and 8.4e-2.
+    for model, bound in ((FE, 1e-8), (PD, 5e-3), ("coupled", 0.11)):
         at, of_elements = (runs[1].rows(name, (1, 0.5), time=4)[0] for name in (model, FE))
         strains = of_elements["ux"] + of_elements["uy"] / 0.5
         for column, wanted in (("sxx", 0.01), ("syy", 0), ("szz", 3 * 2 * strains - 0.01)):
@@ -266,9 +265,9 @@ def torsion():
     """Saint-Venant's square bar."""
     table = Comparison("Torsion of a square bar, edge 1, G = 80, twist 0.01")
     moment, shear = of_square_bar()
-    # Measured: torque 1.52e-3 and 3.8e-4, stress -1.01e-3 and -2.5e-4; peridynamics +1.2e-2 and
-    # -4.5e-5 of the torque.
-    for n, of_torque, of_stress, of_bonds in ((12, 2.3e-3, 1.5e-3, 0.018), (24, 5.8e-4, 3.8e-4, 7e-5)):
+    # Measured: torque 1.52e-3 and 3.8e-4, stress -1.01e-3 and -2.5e-4; peridynamics +1.62e-2 and
+    # +4.3e-3 of the torque.
+    for n, of_torque, of_stress, of_bonds in ((12, 2.3e-3, 1.5e-3, 0.024), (24, 5.8e-4, 3.8e-4, 6.5e-3)):
         run = run_quietly("torsion.prm", {"Domain/Cells": f"{n}, {n}, {n}"})
         torque = {model: 8 * run.model(model)["strain energy"] / 0.005 for model in (FE, PD)}
         table.add(f"{n} cells, FEM: torque", torque[FE], moment, relative=of_torque)
@@ -293,11 +292,12 @@ def surface():
         "moments": (0.959, 0.541, 0.380, 0.068, 17.9, -2.629, -0.019, -5.628, 13.31),
     }
     table = Comparison("Surfaces: relative gaps to closed forms")
+    published = {"Peridynamics/Calibration": "discrete"}
     for law, gaps in measured.items():
         bar = [with_surface("bar_1d.prm", law, layer).probe(PD, [1], column="ux") for layer in ("", "0.03")]
-        plates = [with_surface("bar_surface.prm", law, layer) for layer in ("", "0.075")]
+        plates = [with_surface("bar_surface.prm", law, layer, published) for layer in ("", "0.075")]
         end, before = (plates[0].probe(PD, [x, 0.5], column="ux") for x in (2, 1.95))
-        twisted = with_surface("torsion.prm", law)
+        twisted = with_surface("torsion.prm", law, more=published)
         found = (
             bar[0] / 5e-3,
             bar[1] / (5e-3 * (1 - 0.015)),  # F (L - depth/2)/E
@@ -305,7 +305,7 @@ def surface():
             plates[1].probe(PD, [2, 0.5], column="ux") / (5e-3 * (2 - 0.0375)),
             (end - before) / 0.05 / 5e-3,
             plates[0].probe(PD, [1, 1], column="sxx"),
-            with_surface("cantilever.prm", law).probe(PD, (10, 0), column="uy") / beam,
+            with_surface("cantilever.prm", law, more=published).probe(PD, (10, 0), column="uy") / beam,
             8 * twisted.model(PD)["strain energy"] / 0.005 / moment,
             twisted.probe(PD, (0.5, 0, 0.25), column="syz") / shear,
         )
@@ -315,23 +315,23 @@ def surface():
             balanced(table, run)
         note = any("Surface correction = moments" in n and "626 of 2197" in n for n in twisted.summary["notes"])
         check(note == (law == "moments"), f"{law}: the note on nodes that are left: {twisted.summary['notes']}")
-    # Families that go on beyond the sides. The lattice of the plate has an E 1.0 % too large.
+    # Families that go on beyond the sides, with the moduli of the body in all directions.
     law = "fictitious nodes"
     plate = with_surface("bar_surface.prm", law)
     end, before = (plate.probe(PD, [x, 0.5], column="ux") for x in (2, 1.95))
     table.add(f"{law}: 1D bar: end", with_surface("bar_1d.prm", law).probe(PD, [1], column="ux") / 5e-3, 1, absolute=1e-9)
     for name, value, gap in (
-        ("plate: end", end / 0.01, -1.011),
-        ("plate: strain at the end", (end - before) / 0.05 / 5e-3, -1.011),
+        ("plate: end", end / 0.01, 0),
+        ("plate: strain at the end", (end - before) / 0.05 / 5e-3, 0),
         ("plate: sxx at the free side", plate.probe(PD, [1, 1], column="sxx"), 0),
-        ("cantilever: end", with_surface("cantilever.prm", law).probe(PD, (10, 0), column="uy") / beam, -6.189),
+        ("cantilever: end", with_surface("cantilever.prm", law).probe(PD, (10, 0), column="uy") / beam, -5.300),
     ):
         table.add(f"{law}: {name}", value, 1 + gap / 100, absolute=2e-4)
     balanced(table, plate)
     twisted = with_surface("torsion.prm", law)
-    table.add(f"{law}: torsion: torque", 8 * twisted.model(PD)["strain energy"] / 0.005 / moment, 1 + 1.181 / 100, absolute=2e-4)
-    table.add(f"{law}: torsion: stress at the face", twisted.probe(PD, (0.5, 0, 0.25), column="syz") / shear, 1 - 0.884 / 100, absolute=2e-4)
-    table.add("auto: torsion: torque", 8 * with_surface("torsion.prm", "auto").model(PD)["strain energy"] / 0.005 / moment, 1 + 1.181 / 100, absolute=2e-4)
+    table.add(f"{law}: torsion: torque", 8 * twisted.model(PD)["strain energy"] / 0.005 / moment, 1 + 1.620 / 100, absolute=2e-4)
+    table.add(f"{law}: torsion: stress at the face", twisted.probe(PD, (0.5, 0, 0.25), column="syz") / shear, 1 - 0.459 / 100, absolute=2e-4)
+    table.add("auto: torsion: torque", 8 * with_surface("torsion.prm", "auto").model(PD)["strain energy"] / 0.005 / moment, 1 + 1.620 / 100, absolute=2e-4)
     table.show()
 
 

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bonds that break: strength against Griffith, energies, motion.
 
-    fracture.py plate | beside | cantilever | block | bend | mesh | motion | steps | symmetry | oblique | straight | scatter
+    fracture.py plate | beside | cantilever | interfaces | block | bend | mesh | motion | steps | symmetry | oblique | straight | scatter
     fracture.py fine_plate | fine_block | fine_motion      the scenes on their own lattices; the others take one of half the cells a side
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
@@ -122,6 +122,80 @@ def cantilever():
     table.add("energy dissipated per length, against that of beams", rate, sum(row[2] for row in late) / len(late), relative=0.04)
     energy_kept(table, "growth", run, 1e-9)
     table.show()
+
+
+GLUED = """
+set Title     = Glued bar that softens
+set Dimension = 2
+set Physics   = elasticity
+set Models    = peridynamics
+subsection Domain
+  set Upper corner = 100, 20
+  set Cells        = 20, 4
+end
+subsection Material
+  set Young modulus    = 37000
+  set Poisson ratio    = 1/3
+  set Law              = softening
+  set Tensile strength = 3.9
+  set Fracture energy  = 0.1432
+  set Interfaces       = left/elsewhere: fracture energy 0.05, tensile strength 2
+  subsection Phases
+    set Regions       = left: 50.1 - x
+    set Young modulus = left: 37000
+  end
+end
+subsection Boundary conditions
+  set Displacement = left: 0, free ; right: 0.15*t, free
+  set Symmetry     = bottom, top
+end
+subsection Elasticity
+  set Solver = newton
+end
+subsection Time
+  set Time step = 0.004
+end
+"""
+
+
+def interfaces():
+    """A crack runs along the interface of two plies of one material at the energy of the interface, and no bond within them breaks."""
+    table = Comparison("Delamination, m = 4")
+    scene = "prm/fracture/delamination.prm"
+    quiet = {**QUIET, "Domain/Cells": "100, 20"}
+    run = run_scene(scene, quiet)
+    growth = []
+    for t, strain, lost, broken in history(run, "strain energy", DISSIPATED, BROKEN):
+        if broken > 0:
+            opening = 0.16 * t
+            length = (YOUNG * 0.2 ** 3 * opening / (16 * strain / opening)) ** (1 / 3)
+            growth.append((length, 3 * YOUNG * 0.2 ** 3 * opening ** 2 / (16 * length ** 4), lost))
+    late = growth[len(growth) // 3:]
+    check(late[-1][0] - late[0][0] > 0.1, f"the crack grows from {late[0][0]} to {late[-1][0]}")
+    loads = sum(math.sqrt(rate / ENERGY) for _, rate, _ in late) / len(late)
+    print(f"  energy per length: {(late[-1][2] - late[0][2]) / (late[-1][0] - late[0][0]) / ENERGY:.4f}")
+    table.add("load in the mean over that by beams", loads, 1, absolute=0.12)
+    # Plies that are a thousand times as tough: nothing else than the interface breaks.
+    tough = run_scene(scene, {**quiet, "Material/Fracture energy": "40"})
+    for quantity in (BROKEN, DISSIPATED, "force on left in y"):
+        table.add(f"{quantity}, with plies that cannot break", tough.total(quantity, PD, time=1), run.total(quantity, PD, time=1), relative=1e-12)
+    two = run_scene(scene, quiet, ranks=2)
+    table.add("energy dissipated, two processes", two.total(DISSIPATED, PD, time=1), run.total(DISSIPATED, PD, time=1), relative=1e-9)
+    # A uniform body whose interface is as tough as itself breaks as without it.
+    same, none = (run_scene(scene, {**quiet, "Material/Interfaces": text, "Material/Fracture energy": "0.01", "Time/End time": "0.6"})
+                  for text in ("elsewhere/upper: fracture energy 0.01", ""))
+    table.add("an interface like the body", same.total(DISSIPATED, PD, time=0.6), none.total(DISSIPATED, PD, time=0.6), relative=1e-9)
+    # Bonds that soften: the bar bears what its glue does, and gives off the energy of that; measured: 0.967, 1.0076. Steps must be short: 1.15 of the energy with five times as long ones.
+    glued = run_scene(GLUED, QUIET)
+    table.add("glue that softens: strength of a bar", largest(glued, "force on right in x") / 20 / 2, 1, absolute=0.05)
+    table.add("its energy", glued.total(DISSIPATED, PD, time=1) / 20 / 0.05, 1, absolute=0.012)
+    table.show()
+    for text, words in (("upper/lower: fracture energy 1", ("'Interfaces' in section 'Material'", "'lower'", "upper, elsewhere")),
+                        ("upper/upper: fracture energy 1", ("two different phases",)), ("upper: fracture energy 1", ("'name/name'",)),
+                        ("upper/elsewhere: tensile strength 1", ("'fracture energy'",)), ("upper/elsewhere: fracture energy -1", ("greater than 0",)),
+                        ("upper/elsewhere: energy 1", ("fracture energy NUMBER",)), ("upper/elsewhere: fracture energy 1, tensile strength 2", ("'Law = softening'",)),
+                        ("upper/elsewhere: fracture energy 1 ; elsewhere/upper: fracture energy 2", ("twice",))):
+        check_message(run_scene(scene, {"Material/Interfaces": text}, expect_error=True), *words)
 
 
 def block(lattice={"Domain/Cells": "16, 32, 2"}, delta=0.19, apart=0.35):
@@ -332,5 +406,5 @@ def scatter():
 
 
 if __name__ == "__main__":
-    run_parts(plate, beside, cantilever, block, bend, mesh, motion, steps, symmetry, oblique, straight, scatter,
+    run_parts(plate, beside, cantilever, interfaces, block, bend, mesh, motion, steps, symmetry, oblique, straight, scatter,
               fine_plate=fine_plate, fine_block=fine_block, fine_motion=fine_motion)

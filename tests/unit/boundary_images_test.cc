@@ -157,7 +157,8 @@ namespace
     Triangulation<dim> mesh;
     make_lattice(mesh);
     const MeshFile<dim> file("lattice", mesh);
-    Settings            more{{"Peridynamics/Surface correction", "auto"}};
+    Settings            more{{"Peridynamics/Surface correction", "auto"},
+                             {"Peridynamics/Calibration", "discrete"}}; // meshes have no other
     if (symmetric)
       more.push_back({"Boundary conditions/Symmetry", dim == 2 ? "bottom" : "back"});
     const Body<dim> lattice(box<dim>() + more, ModelKind::peridynamics);

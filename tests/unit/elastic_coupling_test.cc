@@ -242,7 +242,8 @@ TEST(StateCouplings, certificates)
 {
   for (const std::string scheme : {"exchange", "splice", "blending"})
     {
-      const Body<2>             plate(block<2>(scheme), ModelKind::coupled);
+      const Body<2> plate(block<2>(scheme) + Settings{{"Peridynamics/Calibration", "discrete"}},
+                          ModelKind::coupled);
       const CouplingCertificate found = examine_coupling(*plate.elements);
       EXPECT_EQ(found.linear < 1e-12, scheme != "blending") << scheme << ": " << found.linear;
       EXPECT_EQ(found.asymmetry < 1e-13, scheme != "splice") << scheme << ": " << found.asymmetry;

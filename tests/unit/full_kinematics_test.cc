@@ -162,6 +162,7 @@ namespace PeriDeal
                         {"Domain/Cells", dim == 1 ? "40" : "40, 20"},
                         {"Peridynamics/Horizon ratio", std::to_string(m)},
                         {"Peridynamics/Kernel exponent", "2"},
+                        {"Peridynamics/Calibration", "discrete"},
                         {"Material/Young modulus", "3"},
                         {"Material/Poisson ratio", "0.2"},
                         {"Material/Density", "0.7"}};

@@ -331,6 +331,35 @@ TEST(Laws, IsotropicFamilies)
 }
 
 
+// Where `Calibration = auto` takes them: two spacings along the longest edge, edges 1 : 1.5.
+TEST(Laws, IsotropicFamiliesOfTheDefault)
+{
+  const auto has = [](const auto &h, const double m) {
+    constexpr int dim     = std::decay_t<decltype(h)>::dimension;
+    const double  horizon = m * *std::max_element(h.begin_raw(), h.end_raw());
+    for (const KernelShape shape :
+         {KernelShape::constant, KernelShape::conical, KernelShape::gaussian})
+      for (const unsigned int n : {0u, 1u, 2u})
+        for (const VolumeFraction fraction :
+             {VolumeFraction::none, VolumeFraction::linear, VolumeFraction::exact})
+          {
+            const std::string message = SceneTests::message_of(
+              [&] { lattice_family<dim>(h, horizon, shape, n, fraction, Calibration::isotropic); });
+            EXPECT_EQ(message, "") << h << ": " << m << ' ' << static_cast<int>(shape) << ' ' << n
+                                   << ' ' << static_cast<int>(fraction);
+          }
+  };
+  for (const double m : {2., 2.2, 2.5, 3., 3.3, 4.})
+    {
+      for (const double b : {1., 1.1, 1.25, 1.5})
+        has(dealii::Tensor<1, 2>({1., b}), m);
+      has(dealii::Tensor<1, 3>({1., 1., 1.}), m);
+      for (const double b : {1., 1.2, 1.5})
+        has(dealii::Tensor<1, 3>({1., b, 1.5}), m);
+    }
+}
+
+
 TEST(Laws, FamilySizes)
 {
   const auto size = [](const double m, const KernelShape shape, const VolumeFraction fraction) {

@@ -46,7 +46,8 @@ namespace
                                     {"Material/Poisson ratio", nu},
                                     {"Peridynamics/Horizon ratio", lattice.ratio},
                                     {"Peridynamics/Kernel", lattice.kernel},
-                                    {"Peridynamics/Kernel exponent", lattice.exponent}} +
+                                    {"Peridynamics/Kernel exponent", lattice.exponent},
+                                    {"Peridynamics/Calibration", "discrete"}} +
                            more,
                          ModelKind::peridynamics);
     const Moduli    moduli = body.scene.material.moduli(dealii::Point<dim>());

@@ -74,6 +74,15 @@ namespace PeriDeal
         std::vector<MaterialProperty> young, shear, poisson, angles;
       } orthotropy;
 
+      /** What breaks between two phases, by their numbers in Phases::all(); -1: the rest. */
+      struct Interface
+      {
+        std::array<int, 2>    phases;
+        double                fracture_energy;
+        std::optional<double> tensile_strength; // of bonds that soften
+      };
+      std::vector<Interface> interfaces;
+
       /** J2 plasticity. */
       bool yields() const
       {

@@ -61,4 +61,12 @@ namespace PeriDeal
   /** Of `Models = auto`. */
   template <int dim>
   void refuse_choice(const Scene<dim> &scene);
+
+
+  /**
+   * What `Calibration` is, `auto` resolved: isotropic for solids on lattices whose bonds stay and
+   * are enough for it (doc/elasticity.md), else discrete.
+   */
+  template <int dim>
+  Calibration calibration_of(const BodyParameters<dim> &body);
 } // namespace PeriDeal

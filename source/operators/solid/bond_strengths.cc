@@ -90,19 +90,22 @@ namespace PeriDeal
   template <int dim>
   BondStrengths<dim>::BondStrengths(const BreakableBonds<dim> &bonds)
     : of_energy(!bonds.material.critical_stretch)
+    , interfaces(bonds)
   {
     const Nodes<dim>       &places   = bonds.families.nodes();
     const Material         &material = bonds.material;
     const MaterialProperty &strength = of_energy ? *material.fracture_energy :
                                                    *material.critical_stretch;
     std::string             message;
-    Vector                  stretches(places.partitioner());
+    Vector                  stretches(places.partitioner()), stored(places.partitioner());
     for (unsigned int i = 0; i < places.n_owned(); ++i)
       {
         const Point<dim> &p     = places.position(i);
         const double      value = strength.value(p);
         double           &s     = stretches.local_element(i);
-        s = of_energy ? std::sqrt(value / bonds.crossing_energy(i).total()) : value;
+        const double energy = of_energy || interfaces.any() ? bonds.crossing_energy(i).total() : 0.;
+        stored.local_element(i) = energy;
+        s                       = of_energy ? std::sqrt(value / energy) : value;
         if (message.empty() && !(s > 0.))
           message = fault_at(of_energy, p);
       }
@@ -111,29 +114,51 @@ namespace PeriDeal
       {
         const WeibullField<dim> field(places, material.scatter->modulus, material.scatter->seed);
         for (unsigned int i = 0; i < places.n_owned(); ++i)
-          stretches.local_element(i) *= field.factor(places.position(i));
+          {
+            const double factor = field.factor(places.position(i));
+            stretches.local_element(i) *= factor;
+            stored.local_element(i) /= factor * factor;
+          }
       }
     stretches.update_ghost_values();
     nodes.assign(stretches.begin(), stretches.begin() + places.n_local());
+    std::vector<double> lowest = nodes;
     if (!strength.is_constant())
-      find_weak(bonds.families, strength);
+      find_weak(bonds.families, strength, lowest);
+    if (interfaces.any())
+      {
+        stored.update_ghost_values();
+        crossing.assign(stored.begin(), stored.begin() + places.n_local());
+        for (const Material::Law::Interface &face : material.law.interfaces)
+          energies.push_back(face.fracture_energy);
+        interfaces.lower(
+          bonds.families,
+          [&](const unsigned int i, const unsigned int j, const unsigned int k) {
+            return across(i, j, k);
+          },
+          lowest);
+      }
+    if (begins.empty() && !interfaces.any())
+      return;
+    std::copy_n(lowest.begin(), places.n_owned(), stretches.begin());
+    stretches.update_ghost_values();
+    least.assign(stretches.begin(), stretches.begin() + places.n_local());
   }
 
 
   template <int dim>
   void BondStrengths<dim>::find_weak(const Families<dim>    &families,
-                                     const MaterialProperty &strength)
+                                     const MaterialProperty &strength,
+                                     std::vector<double>    &lowest)
   {
     constexpr unsigned int                      n_places = 32;
     const Nodes<dim>                           &places   = families.nodes();
     const std::vector<bool>                     beside   = beside_weaker(families, strength);
     std::vector<typename Families<dim>::Member> family;
     std::string                                 message;
-    Vector                                      lowest(places.partitioner());
     begins.assign(1, 0);
     for (unsigned int i = 0; i < places.n_owned(); ++i)
       {
-        lowest.local_element(i) = nodes[i];
         families.members_of(i, family);
         bool any = beside[i];
         for (const auto &bond : family)
@@ -166,16 +191,13 @@ namespace PeriDeal
                                              nodes[first] * of_weakest(at_first),
                                              nodes[last] * of_weakest(at_last)});
             weak.push_back({j, stretch});
-            lowest.local_element(i) = std::min(lowest.local_element(i), stretch);
+            lowest[i] = std::min(lowest[i], stretch);
           }
         begins.push_back(weak.size());
       }
     throw_on_all_if_any(places.communicator(), message);
     if (Utilities::MPI::sum(weak.size(), places.communicator()) == 0)
       begins.clear();
-    lowest.update_ghost_values();
-    if (!begins.empty())
-      least.assign(lowest.begin(), lowest.begin() + places.n_local());
   }
 
 

@@ -15,7 +15,6 @@
 #include <cmath>
 #include <optional>
 #include <string>
-#include <tuple>
 
 namespace PeriDeal
 {
@@ -41,9 +40,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::pair<double, double> SofteningStrengths<dim>::of_node(const CrossingEnergy &crossing,
-                                                             const double          strength,
-                                                             const double          energy)
+  typename SofteningStrengths<dim>::Limits SofteningStrengths<dim>::of_node(
+    const CrossingEnergy &crossing,
+    const double          strength,
+    const double          energy)
   {
     constexpr unsigned int n_rounds = 20; // the integral goes with the logarithm of w
     // What dilatations bear fades with 1 - d, which falls much sooner than T: where it is against
@@ -70,11 +70,13 @@ namespace PeriDeal
   template <int dim>
   SofteningStrengths<dim>::SofteningStrengths(const BreakableBonds<dim> &bonds)
     : curve(bonds.material.law.softening)
+    , interfaces(bonds)
   {
     const Nodes<dim>                &places   = bonds.families.nodes();
     const Material                  &material = bonds.material;
+    const std::size_t                n        = places.n_local();
     std::string                      message;
-    Vector                           limits(places.partitioner()), widths(places.partitioner());
+    Vector                           onset(places.partitioner()), opening(onset);
     std::optional<WeibullField<dim>> field;
     const auto                       value = [&](const MaterialProperty &property,
                            const std::string      &entry,
@@ -86,22 +88,45 @@ namespace PeriDeal
     };
     if (material.scatter)
       field.emplace(places, material.scatter->modulus, material.scatter->seed);
-    for (unsigned int i = 0; i < places.n_owned(); ++i)
+    // Of phases, then of interfaces.
+    for (unsigned int k = 0; k <= material.law.interfaces.size(); ++k)
       {
-        const Point<dim> &p        = places.position(i);
-        const double      strength = value(*material.law.tensile_strength, "Tensile strength", p) *
-                                (field ? field->factor(p) : 1.),
-                     energy = value(*material.fracture_energy, "Fracture energy", p);
-        if (message.empty())
-          std::tie(limits.local_element(i), widths.local_element(i)) =
-            of_node(bonds.crossing_energy(i), strength, energy);
+        for (unsigned int i = 0; i < places.n_owned(); ++i)
+          {
+            const Point<dim> &p = places.position(i);
+            const double      strength =
+                           (k > 0 ? *material.law.interfaces[k - 1].tensile_strength :
+                                    value(*material.law.tensile_strength, "Tensile strength", p)) *
+                           (field ? field->factor(p) : 1.),
+                         energy = k > 0 ? material.law.interfaces[k - 1].fracture_energy :
+                                          value(*material.fracture_energy, "Fracture energy", p);
+            if (!message.empty())
+              continue;
+            const Limits found       = of_node(bonds.crossing_energy(i), strength, energy);
+            onset.local_element(i)   = found.onset;
+            opening.local_element(i) = found.opening;
+          }
+        throw_on_all_if_any(places.communicator(), message);
+        onset.update_ghost_values();
+        opening.update_ghost_values();
+        for (unsigned int i = 0; i < n; ++i)
+          nodes.push_back({onset.local_element(i), opening.local_element(i)});
+        if (k == 0)
+          onsets.assign(onset.begin(), onset.begin() + n);
+        onset.zero_out_ghost_values();
+        opening.zero_out_ghost_values();
       }
-    throw_on_all_if_any(places.communicator(), message);
-    limits.update_ghost_values();
-    widths.update_ghost_values();
-    onsets.assign(limits.begin(), limits.begin() + places.n_local());
-    openings.assign(widths.begin(), widths.begin() + places.n_local());
     stored = Utilities::MPI::max(stored, places.communicator());
+    if (!interfaces.any())
+      return;
+    least = onsets;
+    interfaces.lower(
+      bonds.families,
+      [&](const unsigned int i, const unsigned int j, int) { return limits(i, j).onset; },
+      least);
+    std::copy_n(least.begin(), places.n_owned(), onset.begin());
+    onset.update_ghost_values();
+    least.assign(onset.begin(), onset.begin() + n);
   }
 
 

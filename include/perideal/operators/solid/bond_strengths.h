@@ -3,9 +3,10 @@
 
 #pragma once
 
-#include <perideal/operators/solid/damage_criterion.h>
+#include <perideal/operators/solid/interface_bonds.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace PeriDeal
@@ -17,6 +18,10 @@ namespace PeriDeal
    * whose ends have the fracture energy (critical stretch) of the weakest place: the smaller
    * s_i sqrt(G_min/G_i) of both ends.
    * So a layer between two rows of nodes takes its own energy to break, however thin it is.
+   *
+   * Bonds across an interface of two phases (Material::Law::Interface) break at the stretch at
+   * which what crosses it, half of it that of each side, has stored its energy:
+   * sqrt(2 G/(c_i + c_j)), c = G_i/s_i^2.
    *
    * Ways are looked at where the material is seen to be weaker between a node of the family and the
    * next ones, in 32 places each.
@@ -39,6 +44,8 @@ namespace PeriDeal
     /** An owned node and a neighbour, or the origin of its image, in either order. */
     double of_bond(const unsigned int i, const unsigned int j) const
     {
+      if (const int k = interfaces.between(i, j); k != InterfaceBonds<dim>::none)
+        return across(i, j, k);
       const double at_ends = std::min(nodes[i], nodes[j]);
       if (begins.empty())
         return at_ends;
@@ -59,13 +66,14 @@ namespace PeriDeal
     /** The least of a node's bonds to weaker or equal ones and of itself. */
     const std::vector<double> &least_stretches() const override
     {
-      return begins.empty() ? nodes : least;
+      return least.empty() ? nodes : least;
     }
 
     std::size_t memory_consumption() const override
     {
-      return (nodes.capacity() + least.capacity()) * sizeof(double) +
-             begins.capacity() * sizeof(std::size_t) + weak.capacity() * sizeof(Weak);
+      return (nodes.capacity() + least.capacity() + crossing.capacity()) * sizeof(double) +
+             interfaces.memory_consumption() + begins.capacity() * sizeof(std::size_t) +
+             weak.capacity() * sizeof(Weak);
     }
 
   private:
@@ -75,15 +83,26 @@ namespace PeriDeal
       double       stretch;
     };
 
-    void find_weak(const Families<dim> &families, const MaterialProperty &strength);
+    /** Of the bond between two nodes across the interface k. */
+    double across(const unsigned int i, const unsigned int j, const unsigned int k) const
+    {
+      return std::sqrt(2. * energies[k] / (crossing[i] + crossing[j]));
+    }
+
+    void find_weak(const Families<dim>    &families,
+                   const MaterialProperty &strength,
+                   std::vector<double>    &lowest);
 
     /** Beside these local nodes the material is weaker than at them. */
     std::vector<bool> beside_weaker(const Families<dim>    &families,
                                     const MaterialProperty &strength) const;
 
-    const bool               of_energy; // from the fracture energy; else given
-    std::vector<double>      nodes, least;
-    std::vector<std::size_t> begins; // by owned node; empty: no way is weaker than its ends
-    std::vector<Weak>        weak;
+    const bool                of_energy;    // from the fracture energy; else given
+    std::vector<double>       nodes, least; // empty: as nodes
+    const InterfaceBonds<dim> interfaces;
+    std::vector<double>       energies; // of interfaces
+    std::vector<double>       crossing; // c of nodes, with interfaces only
+    std::vector<std::size_t>  begins;   // by owned node; empty: no way is weaker than its ends
+    std::vector<Weak>         weak;
   };
 } // namespace PeriDeal

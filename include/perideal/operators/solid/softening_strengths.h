@@ -4,8 +4,9 @@
 #pragma once
 
 #include <perideal/laws/softening_curve.h>
-#include <perideal/operators/solid/damage_criterion.h>
+#include <perideal/operators/solid/interface_bonds.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,8 @@ namespace PeriDeal
    *     + 2 s_0^2 dilatations I,  I = integral of T^2/s ds from s_0 on, of bonds of the length l.
    *
    * Where the bonds have stored more than G at s_0 they break at once, at the stretch at which they
-   * have stored G. A bond has the values of its end that softens earlier.
+   * have stored G. A bond has the values of its end that softens earlier, both by the strength and
+   * energy of an interface of two phases where it crosses one (Material::Law::Interface).
    */
   template <int dim>
   class SofteningStrengths : public DamageCriterion<dim>
@@ -37,7 +39,7 @@ namespace PeriDeal
                         const double       extension,
                         const double       length) const override
     {
-      return {extension, length * onsets[weaker(i, j)]};
+      return {extension, length * limits(i, j).onset};
     }
 
     bool softens() const override
@@ -50,10 +52,10 @@ namespace PeriDeal
                      const double       length,
                      const double       ratio) const override
     {
-      const unsigned int k = weaker(i, j);
-      return openings[k] > 0. ?
-               curve((ratio - 1.) * onsets[k] * length / openings[k]) / std::max(1., ratio) :
-               0.;
+      const Limits of_bond = limits(i, j);
+      return of_bond.opening > 0. ? curve((ratio - 1.) * of_bond.onset * length / of_bond.opening) /
+                                      std::max(1., ratio) :
+                                    0.;
     }
 
     double stored_at_onset() const override
@@ -63,7 +65,7 @@ namespace PeriDeal
 
     const std::vector<double> &least_stretches() const override
     {
-      return onsets;
+      return least.empty() ? onsets : least;
     }
 
     const std::vector<double> &of_nodes() const override
@@ -73,24 +75,36 @@ namespace PeriDeal
 
     std::size_t memory_consumption() const override
     {
-      return (onsets.capacity() + openings.capacity()) * sizeof(double);
+      return (onsets.capacity() + least.capacity()) * sizeof(double) +
+             nodes.capacity() * sizeof(Limits) + interfaces.memory_consumption();
     }
 
   private:
-    unsigned int weaker(const unsigned int i, const unsigned int j) const
+    /** s_0 and w, 0: brittle. */
+    struct Limits
     {
-      const bool first = std::make_pair(onsets[i], openings[i]) <
-                         std::make_pair(onsets[j], openings[j]);
-      return first ? i : j;
+      double onset, opening;
+
+      bool operator<(const Limits &other) const
+      {
+        return std::make_pair(onset, opening) < std::make_pair(other.onset, other.opening);
+      }
+    };
+
+    /** Of a bond. */
+    Limits limits(const unsigned int i, const unsigned int j) const
+    {
+      const std::size_t first = (interfaces.between(i, j) + 1) * onsets.size();
+      return std::min(nodes[first + i], nodes[first + j]);
     }
 
-    /** s_0 and w, 0: brittle. @param strength, @param energy the fracture energy, of a node */
-    std::pair<double, double> of_node(const CrossingEnergy &crossing,
-                                      const double          strength,
-                                      const double          energy);
+    /** @param strength, @param energy the fracture energy, of a node */
+    Limits of_node(const CrossingEnergy &crossing, const double strength, const double energy);
 
-    const SofteningCurve curve;
-    std::vector<double>  onsets, openings; // s_0 and w of owned nodes and ghosts
-    double               stored = 0.;
+    const SofteningCurve      curve;
+    const InterfaceBonds<dim> interfaces;
+    std::vector<Limits>       nodes; // owned ones and ghosts; then the same at each interface
+    std::vector<double>       onsets, least; // s_0 of nodes, of their bonds (empty: the same)
+    double                    stored = 0.;
   };
 } // namespace PeriDeal
