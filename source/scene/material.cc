@@ -37,17 +37,19 @@ namespace PeriDeal
         of_phases[k] = in_phase(k);
       return {in_phase(-1), std::make_shared<const Regions>(phases.all()), of_phases};
     }
+
+    // Of what entries say.
+    const std::string two =
+      " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
+    const std::string formula = ": a number or a formula of x, y, z.";
   } // namespace
 
 
   Material::Material()
     : SceneSection("Material")
   {
-    const std::string two =
-      " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
-    const std::string formula = ": a number or a formula of x, y, z.";
-    const auto        entry   = [&](const std::string &name,
-                           const std::string &default_text = "") -> std::string          &{
+    const auto entry = [&](const std::string &name,
+                           const std::string &default_text = "") -> std::string & {
       return declare(name, EntryType::formula, default_text, material_entry(name).unit);
     };
     entry("Conductivity", "1") =
@@ -312,7 +314,7 @@ namespace PeriDeal
 
 
     /** The entries of the law in the section, whose kind has been read. Throws UserError. */
-    void parse_law(const SceneSection &section, Material::Law &law)
+    void parse_law(const Material &section, Material::Law &law)
     {
       const auto belongs =
         [&](const std::string &entry, const SolidLaw kind, const std::string &name) {
@@ -353,6 +355,8 @@ namespace PeriDeal
                          force,
                          "is " + number_text(at_rest) + " at s = 0, where a bond has no force.");
         }
+      refuse_softening(section);
+      refuse_plastic(section);
     }
   } // namespace
 
@@ -376,10 +380,10 @@ namespace PeriDeal
     SceneSection::parse();
     if (const auto diffusivity = optional_property("Diffusivity", physics))
       {
-        if (physics != Physics::moisture)
-          error("Diffusivity",
-                "is for 'Physics = moisture'; 'Physics' is '" + names_of(physics).physics +
-                  "'. Use 'Conductivity', 'Density' and 'Heat capacity'.");
+        refuse(physics != Physics::moisture,
+               "Diffusivity",
+               "is for 'Physics = moisture'; 'Physics' is '" + names_of(physics).physics +
+                 "'. Use 'Conductivity', 'Density' and 'Heat capacity'.");
         for (const std::string entry : {"Conductivity", "Density", "Heat capacity"})
           refuse(
             is_given(entry) || phases.gives(entry),
@@ -389,10 +393,10 @@ namespace PeriDeal
         density       = saturated_concentration;
         heat_capacity = MaterialProperty(1.);
       }
-    if (conductivity.depends_on_temperature() && interface_rule == InterfaceRule::harmonic)
-      error(
-        "Interface rule",
-        "'harmonic' follows each bond through the phases and cannot have a 'Conductivity' with T; use 'arithmetic' or 'minimum'.");
+    refuse(
+      conductivity.depends_on_temperature() && interface_rule == InterfaceRule::harmonic,
+      "Interface rule",
+      "'harmonic' follows each bond through the phases and cannot have a 'Conductivity' with T; use 'arithmetic' or 'minimum'.");
 
     thermal_expansion    = property("Thermal expansion");
     fracture_energy      = optional_property("Fracture energy", physics);
@@ -400,19 +404,18 @@ namespace PeriDeal
     law.tensile_strength = optional_property("Tensile strength", physics);
     law.yield_stress     = optional_property("Yield stress", physics);
     law.hardening        = property("Hardening modulus");
-    if (fracture_energy && critical_stretch)
-      error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
+    refuse(fracture_energy && critical_stretch,
+           "Critical stretch",
+           "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
     for (const std::string entry : {"Law", "Relaxation", "Softening", "Bond force", "Interfaces"})
       refuse_unless_elastic(entry, physics);
     parse_law(*this, law);
-    refuse_softening(*this);
-    refuse_plastic(*this);
     law.interfaces = parse_interfaces(*this);
-    if (law.kind == SolidLaw::formula && fracture_energy)
-      error(
-        "Fracture energy",
-        "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
+    refuse(
+      law.kind == SolidLaw::formula && fracture_energy.has_value(),
+      "Fracture energy",
+      "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
     law.orthotropy = parse_orthotropy(*this, physics, dim, plane);
     if (!law.orthotropy.young.empty()) // no number: nobody may take it for uniform and isotropic
       given.properties.fill(MaterialProperty(Expression("1 + 0*x", where("Young moduli"))));

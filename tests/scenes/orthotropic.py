@@ -4,6 +4,7 @@
 
     orthotropic.py lamina      stiffness and shear coupling by the angle, in plane stress and turned in space
     orthotropic.py bodies      the isotropic law, other solvers, phases, angles that vary
+    orthotropic.py hole        a round hole in a wide plate, against Lekhnitskii
     orthotropic.py motion      a bar that swings along itself
 """
 
@@ -152,6 +153,18 @@ def bodies():
     table.show()
 
 
+def hole():
+    """It becomes an ellipse: half axes grow by k/E along the pull and shrink by 1/sqrt(E1 E2) across (Lekhnitskii, Anisotropic Plates, 1968)."""
+    table = Comparison("half axes of a hole of radius 1 in a plate of 100 x 100, pulled by 1 along x")
+    for angle, along, across, ratio in ((0, E1, E2, NU12), (90, E2, E1, NU12 * E2 / E1)):
+        at = run_scene("prm/elasticity/orthotropic_hole.prm", {"Material/Material angle": str(angle), "Output/Fields": "none"}).rows(FE)
+        factor = 1 + math.sqrt(2 * (math.sqrt(along / across) - ratio) + along / G12)
+        table.add(f"{angle} degrees, along", at[1]["ux"] - at[0]["ux"], factor / along, relative=2e-3)
+        table.add(f"{angle} degrees, across", at[0]["uy"] - at[1]["uy"], -1 / math.sqrt(along * across), relative=5e-3)
+        table.add(f"{angle} degrees, sxx above the hole", at[0]["sxx"], factor, relative=0.1)
+    table.show()
+
+
 WAVE = """
 Dimension = 2
 Physics = elasticity
@@ -185,4 +198,4 @@ def motion():
 
 
 if __name__ == "__main__":
-    run_parts(lamina, bodies, motion)
+    run_parts(lamina, bodies, hole, motion)
