@@ -21,7 +21,8 @@ namespace PeriDeal
     std::string cracked_text(const unsigned int n_cells,
                              const std::string &m,
                              const std::string &form,
-                             const std::string &kinematics)
+                             const std::string &kinematics,
+                             const std::string &law = "set Critical stretch = 0.01\n")
     {
       const auto list = [](const std::string &entry) {
         return entry + ", " + entry + (dim > 2 ? ", " + entry : "");
@@ -35,9 +36,9 @@ namespace PeriDeal
              list("0") + "\nset Upper corner = " + list("1") +
              "\nset Cells = " + list(std::to_string(n_cells)) +
              "\nset Nodes = cell centers\nend\nsubsection Material\nset Young modulus = "
-             "200\nset Poisson ratio = 0.25\nset Density = 1.0\nset Critical stretch = "
-             "0.01\nend\nsubsection Boundary conditions\nset Traction = top: 0, 0.7" +
-             last + "; bottom: 0, -0.7" + last + "\nend\nsubsection Cracks\nset " + crack +
+             "200\nset Poisson ratio = 0.25\nset Density = 1.0\n" +
+             law + "end\nsubsection Boundary conditions\nset Traction = top: 0, 0.7" + last +
+             "; bottom: 0, -0.7" + last + "\nend\nsubsection Cracks\nset " + crack +
              "\nend\nsubsection Peridynamics\nset Horizon ratio = " + m +
              "\nset Operator form = " + form +
              "\nset Surface correction = none" // as LAMMPS has it
@@ -133,10 +134,48 @@ namespace PeriDeal
 
 
     /**
-     * Bonds at each end, by second of a processor, of LAMMPS' linear peridynamic solid; 0: it is
-     * not installed.
+     * Explicit steps of a cracked cube with a law: bonds at each end, by second of a processor, in
+     * the second half of a short run.
      */
-    double rate_of_lammps(const unsigned int n_cells, const double m, const unsigned int n_steps)
+    double measure_law(const std::string &name, const std::string &law, const std::string &model)
+    {
+      constexpr unsigned int n_cells = 31, n_steps = 60;
+      ElasticBody<3>         body(
+        cracked_text<3>(n_cells, "3", "auto", "linear\nset Model = " + model, law));
+      StateOperator<3> &op = *body.op;
+      Vector            u, v;
+      op.initialize_vector(u);
+      op.initialize_vector(v);
+      StepperOptions options;
+      options.time_step    = -1.;
+      const auto   stepper = make_motion_stepper("verlet", op, options);
+      const double dt      = stepper->current_step();
+      stepper->advance(u, v, 0., n_steps * dt);
+      const double start = processor_seconds();
+      stepper->advance(u, v, n_steps * dt, 2 * n_steps * dt);
+      const double seconds = (processor_seconds() - start) / n_steps,
+                   bonds   = 2e-6 * static_cast<double>(op.size().bonds) / seconds;
+      found("laws, 3D 31^3, m = 3: " + name,
+            text("%.1f M bonds/s at both ends, %.2f M node updates/s, %.0f bytes per node",
+                 bonds,
+                 1e-6 * static_cast<double>(op.size().unknowns) / 3. / seconds,
+                 static_cast<double>(op.size().memory) * 3. / op.size().unknowns));
+      return bonds;
+    }
+
+
+    /** A law of LAMMPS: the pair style, and what follows its moduli, horizon and stretch. */
+    struct LawOfLammps
+    {
+      std::string style, numbers;
+    };
+
+
+    /** Bonds at each end, by second of a processor, of LAMMPS; 0: it is not installed. */
+    double rate_of_lammps(const LawOfLammps &law,
+                          const unsigned int n_cells,
+                          const double       m,
+                          const unsigned int n_steps)
     {
       namespace fs = std::filesystem;
       if (std::system("command -v lmp > /dev/null 2>&1") != 0)
@@ -149,10 +188,9 @@ namespace PeriDeal
         << "units si\ndimension 3\nboundary s s s\natom_style peri\natom_modify map array\n"
         << "neighbor " << 0.1 * h << " bin\nneigh_modify delay 1000\nlattice sc " << h
         << "\nregion box block 0 " << n_cells - 0.5 << " 0 " << n_cells - 0.5 << " 0 "
-        << n_cells - 0.5
-        << " units lattice\ncreate_box 1 box\ncreate_atoms 1 box\npair_style peri/lps\n"
-        << "pair_coeff 1 1 133.0 80.0 " << (m + 1e-4) * h
-        << " 0.01 0.25\nset group all density 1.0\n"
+        << n_cells - 0.5 << " units lattice\ncreate_box 1 box\ncreate_atoms 1 box\npair_style peri/"
+        << law.style << "\npair_coeff 1 1 133.0 80.0 " << (m + 1e-4) * h << " 0.01 0.25"
+        << law.numbers << "\nset group all density 1.0\n"
         << "set group all volume " << h * h * h
         << "\nvelocity all set 0.0 0.0 0.0\nfix 1 all nve\ntimestep " << 1e-2 * h
         << "\nthermo 1000\nrun " << n_steps << "\n";
@@ -186,6 +224,30 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** The same body with other laws, and those of LAMMPS. */
+    void measure_laws()
+    {
+      measure_law("linear", "", "state-based");
+      measure_law("viscoelastic",
+                  "set Law = viscoelastic\nset Relaxation = 0.5, 1\n",
+                  "state-based");
+      measure_law("plastic, a part of it yields",
+                  "set Law = plastic\nset Yield stress = 0.5\n",
+                  "state-based");
+      measure_law("softening, before it does",
+                  "set Law = softening\nset Tensile strength = 1e3\nset Fracture energy = 1e9\n",
+                  "state-based");
+      for (const LawOfLammps &law :
+           {LawOfLammps{"lps", ""}, LawOfLammps{"ves", " 0.5 1"}, LawOfLammps{"eps", " 0.5"}})
+        if (const double rate = rate_of_lammps(law, 31, 3., 40); rate > 0.)
+          found("laws, 3D 31^3, m = 3: LAMMPS' peri/" + law.style,
+                text("%.1f M bonds/s at both ends", 1e-6 * rate));
+    }
+  } // namespace
+
+
   void measure_peers()
   {
     const Rates  linear = measure_motion<3>("peers, 3D 41^3, m = 3", 41, "3", "auto", 0.05);
@@ -197,7 +259,7 @@ namespace PeriDeal
                                           0.05,
                                           "full")
                           .whole,
-                 theirs = rate_of_lammps(41, 3., 20);
+                 theirs = rate_of_lammps({"lps", ""}, 41, 3., 20);
     found("peers, 3D 41^3, m = 3: memory, few nodes damaged",
           text("%.0f bytes per node", linear.bytes),
           "<= 250 bytes",
@@ -215,5 +277,6 @@ namespace PeriDeal
               ">= 1.5 x",
               full >= 1.5 * theirs);
       }
+    measure_laws();
   }
 } // namespace PeriDeal
