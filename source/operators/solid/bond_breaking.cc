@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "crossing_sums.h"
@@ -16,6 +17,18 @@
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** Numbers in ascending order, each once. */
+    void unite(std::vector<unsigned int> &all, const std::vector<unsigned int> &more)
+    {
+      std::vector<unsigned int> both;
+      std::set_union(all.begin(), all.end(), more.begin(), more.end(), std::back_inserter(both));
+      all = std::move(both);
+    }
+  } // namespace
+
 
   template <int dim>
   BondBreaking<dim>::BondBreaking(SolidBonds<dim>           &bonds,
@@ -34,7 +47,9 @@ namespace PeriDeal
       bonds.rows.body.state.resize(bonds.rows.body.size());
     if (!criterion)
       return;
-    if (bonds.sums.has_lattice())
+    if (bonds.sums.has_lattice() ||
+        (criterion->softens() && !body.elasticity.is_static() && !bonds.kinematics.is_full() &&
+         bonds.families.neighbors().has_unique_sites()))
       screen = std::make_unique<StretchScreen<dim>>(bonds.families, criterion->least_stretches());
     if (bonds.kinematics.is_full() && !criterion->softens())
       watch_limits();
@@ -155,8 +170,9 @@ namespace PeriDeal
     for (unsigned int i = 0; !screen && i < bonds.families.nodes().n_owned(); ++i)
       if (exceeds == nullptr || exceeds[i] != 0)
         look_at_row(i);
-    const double least_strain = bonds.thermal.least();
-    for (const unsigned int i : screen ? screen->suspects(u, least_strain) : losing)
+    const double                     least_strain = bonds.thermal.least();
+    const std::vector<unsigned int> &suspects = screen ? screen->suspects(u, least_strain) : losing;
+    for (const unsigned int i : suspects)
       {
         if (rows.is_on_lattice(i))
           {
@@ -173,6 +189,11 @@ namespace PeriDeal
         if (rows.may_exceed(i, u, screen->least_critical() + least_strain))
           look_at_row(i);
       }
+    // The bound of the screen is on what is stretched: one that has softened may be pressed.
+    if (screen)
+      for (const unsigned int i : softened)
+        if (!std::binary_search(suspects.begin(), suspects.end(), i))
+          look_at_row(i);
   }
 
 
@@ -214,7 +235,7 @@ namespace PeriDeal
   {
     if (!criterion)
       return 0.;
-    Assert(!screen, ExcMessage("All bonds are to be stored."));
+    Assert(!bonds.sums.has_lattice(), ExcMessage("All bonds are to be stored."));
     double most = 0.;
     u.update_ghost_values();
     bonds.ends.find(u.begin());
@@ -339,6 +360,8 @@ namespace PeriDeal
         if (criterion->softens())
           soften_dependent(i);
       }
+    if (criterion->softens())
+      unite(softened, losing);
     n_changed = Utilities::MPI::sum(n_ends, bonds.families.nodes().communicator()) / 2;
     so_far.n_broken += Utilities::MPI::sum(n_gone, bonds.families.nodes().communicator()) / 2;
     so_far.released += before - energy();
@@ -399,11 +422,18 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::take_softness()
   {
+    std::vector<unsigned int> of_nodes;
     for (BondRows<dim> *rows : {&bonds.rows.body, &bonds.rows.beyond})
       for (std::size_t k = 0; k < rows->size(); ++k)
-        if (const double lost = rows->nonlinear.history[BondSoftness::n * k + 1];
-            lost > 0. && rows->state.is_whole(k))
-          rows->weaken(k, 1. - lost);
+        {
+          const double *const history = rows->nonlinear.history.data() + BondSoftness::n * k;
+          if (history[0] > 1. && rows == &bonds.rows.body)
+            of_nodes.push_back(rows->node_of(k));
+          if (history[1] > 0. && rows->state.is_whole(k))
+            rows->weaken(k, 1. - history[1]);
+        }
+    of_nodes.erase(std::unique(of_nodes.begin(), of_nodes.end()), of_nodes.end());
+    unite(softened, of_nodes);
   }
 
 

@@ -137,7 +137,8 @@ namespace PeriDeal
     SolidBonds<dim>                    &bonds;
     const bool                          changes; // some bond may break, or a growing crack cut it
     unsigned long long                  n_changed = 0;
-    std::vector<unsigned int>           losing; // bonds, in ascending order
-    std::unique_ptr<StretchScreen<dim>> screen; // null: all bonds are looked at
+    std::vector<unsigned int>           losing;   // bonds, in ascending order
+    std::vector<unsigned int>           softened; // nodes with bonds that are, ascending
+    std::unique_ptr<StretchScreen<dim>> screen;   // null: all bonds are looked at
   };
 } // namespace PeriDeal
