@@ -211,6 +211,8 @@ namespace PeriDeal
       for (unsigned int i = 0; i < cell.indices.size(); ++i)
         volumes(cell.indices[i]) += cell.volume(i);
     });
+    if (cells.stresses)
+      cells.stresses->throw_faults();
     thermal_energy = Utilities::MPI::sum(energy, all);
     if (!thermal_alone && breaking)
       set_all(breaking->bonds, nodes->locally_owned_size(), cells.factors);
@@ -639,7 +641,7 @@ namespace PeriDeal
     if (cells.stresses && nonlinear())
       {
         const WithGhosts ghosts(u);
-        return cells.stresses->find_forces(y, hanging, u);
+        return cells.stresses->find_forces(y, hanging, u, t);
       }
     if (!law)
       return multiply(y, u);
@@ -695,9 +697,10 @@ namespace PeriDeal
     const WithGhosts ghosts(u);
     if (cells.stresses)
       {
-        const double dissipated = cells.stresses->accept(u);
+        const double dissipated = cells.stresses->accept(u, t);
         this->released_beside.by_law += dissipated;
-        if (dissipated > 0. && body.elasticity.is_static()) // as for a run that goes on from here
+        const bool changes = dissipated > 0. || body.material.law.kind == SolidLaw::user;
+        if (changes && body.elasticity.is_static()) // as for a run that goes on from here
           linearize(u);
       }
     if (!law)
