@@ -41,81 +41,109 @@ namespace PeriDeal
     static void make(void *const call);
 
     const Umat                        umat;
-    const int                         n; // of stresses
     std::array<unsigned int, 6>       row{};
     std::array<double, 6 + n_guards>  stress{};
     std::array<double, 36 + n_guards> tangent{};
-    std::array<double, 6>             strain{}, increment{}, of_heat{}, by_temperature{};
     std::vector<double>               statev, properties;
-    std::array<double, 9> rotation{{1., 0., 0., 0., 1., 0., 0., 0., 1.}}, gradient_before{rotation},
-      gradient{rotation};
-    std::array<double, 3> energies{}, place{};
-    double step_ratio = 1., heat = 0., heat_by_temperature = 0., step, times[2], temperature = 0.,
-           no_change = 0., predefined = 0., length;
-    char name[80];
-    int  n_normal, n_shear, n_all, n_states, n_properties, element, point,
-      layer = 1, section = 1, numbers_of_step[4]{1, 0, 0, 0}, number_of_increment;
-    bool rests = true; // neither strain nor time goes on
+    std::array<double, 3>             energies{};
+
+    struct Strains
+    {
+      std::array<double, 6> before{}, change{};
+      std::array<double, 9> rotation{{1., 0., 0., 0., 1., 0., 0., 0., 1.}},
+        gradient_before{rotation}, gradient{rotation};
+    } strains;
+
+    struct Place
+    {
+      std::array<double, 3> x{};
+      double                length;
+      char                  material[80];
+      int                   element, point, layer = 1, section = 1;
+    } place;
+
+    struct Moment
+    {
+      double begin[2], step, ratio = 1.;
+      int    step_number[4]{1, 0, 0, 0}, increment;
+    } moment;
+
+    struct Counts
+    {
+      int normal, shear, all, states, properties;
+    } counts;
+
+    /** Of what a body without a temperature has none. */
+    struct Heat
+    {
+      std::array<double, 6> by_strain{}, by_temperature{};
+      double                made = 0., slope = 0., temperature = 0., change = 0., fields = 0.;
+    } heat;
+
+    /** Neither strain nor time goes on. */
+    bool rests(const Trial &trial) const
+    {
+      const auto &change = strains.change;
+      return !(trial.step > 0.) &&
+             std::all_of(change.begin(), change.end(), [](const double by) { return by == 0.; });
+    }
   };
 
 
   UserStress::Call::Call(const UserStress &law, const Trial &trial)
     : umat(law.library->umat)
-    , n(law.n_normal + law.n_shear)
     , statev(law.numbers.n_states + n_guards, guard)
-    , properties(law.numbers.properties)
-    , step(trial.step > 0. ? trial.step : trial.instant)
-    , length(trial.length)
-    , n_normal(law.n_normal)
-    , n_shear(law.n_shear)
-    , n_all(n)
-    , n_states(law.numbers.n_states)
-    , n_properties(law.numbers.properties.size())
-    , element(trial.element + 1)
-    , point(trial.point + 1)
-    , number_of_increment(trial.increment)
+    , properties(law.material_of(trial).properties)
   {
     if (properties.empty())
       properties.push_back(0.); // an address, at least
-    for (int k = 0; k < n; ++k)
-      row[k] = k < n_normal ? k : 3 + k - n_normal;
+    counts = {static_cast<int>(law.n_normal),
+              static_cast<int>(law.n_shear),
+              static_cast<int>(law.n_normal + law.n_shear),
+              static_cast<int>(law.numbers.n_states),
+              static_cast<int>(law.material_of(trial).properties.size())};
+    for (int k = 0; k < counts.all; ++k)
+      row[k] = k < counts.normal ? k : 3 + k - counts.normal;
+    const int n = counts.all;
     std::fill(stress.begin() + n, stress.end(), guard);
     std::fill(tangent.begin() + n * n, tangent.end(), guard);
-    rests = !(trial.step > 0.);
     for (int k = 0; k < n; ++k)
       {
         const auto  &at   = rows_of_list[row[k]];
         const double size = row[k] < 3 ? 1. : 2.;
-        strain[k]         = trial.state[row[k]];
-        increment[k]      = size * trial.strain[at[0]][at[1]] - strain[k];
+        strains.before[k] = trial.state[row[k]];
+        strains.change[k] = size * trial.strain[at[0]][at[1]] - strains.before[k];
         stress[k]         = trial.state[stress_at + row[k]];
-        rests             = rests && increment[k] == 0.;
       }
     std::copy_n(trial.state + energies_at, 3, energies.begin());
-    std::copy_n(trial.state + first_of_user, n_states, statev.begin());
-    std::copy_n(trial.parameters, 3, place.begin());
+    std::copy_n(trial.state + first_of_user, counts.states, statev.begin());
     // A first load that is put on at once has taken its instant.
     const double begun = trial.increment > 1 ? trial.instant : 0.;
-    times[0] = times[1] = std::max(trial.time - trial.step, begun);
-    const auto &material =
-      law.numbers.materials[static_cast<unsigned int>(std::lround(trial.parameters[3]))];
-    std::memset(name, ' ', sizeof(name));
+    moment.begin[0] = moment.begin[1] = std::max(trial.time - trial.step, begun);
+    moment.step                       = trial.step > 0. ? trial.step : trial.instant;
+    moment.increment                  = trial.increment;
+    std::copy_n(trial.parameters, 3, place.x.begin());
+    place.length                = trial.length;
+    place.element               = trial.element + 1;
+    place.point                 = trial.point + 1;
+    const std::string &material = law.material_of(trial).name;
+    std::memset(place.material, ' ', sizeof(place.material));
     std::transform(material.begin(),
-                   material.begin() + std::min(material.size(), sizeof(name)),
-                   name,
+                   material.begin() + std::min(material.size(), sizeof(place.material)),
+                   place.material,
                    [](const unsigned char c) { return std::toupper(c); });
   }
 
 
   void UserStress::Call::find_gradients()
   {
-    for (int k = 0; k < n; ++k)
+    for (int k = 0; k < counts.all; ++k)
       {
         const auto  &at   = rows_of_list[row[k]];
         const double size = row[k] < 3 ? 1. : 0.5;
         const auto   add  = [&](const unsigned int entry) {
-          gradient_before[entry] += size * strain[k];
-          gradient[entry] += size * (strain[k] + increment[k]);
+          strains.gradient_before[entry] += size * strains.before[k];
+          strains.gradient[entry] += size * (strains.before[k] + strains.change[k]);
         };
         add(at[0] + 3 * at[1]);
         if (at[0] != at[1])
@@ -133,38 +161,38 @@ namespace PeriDeal
             &of.energies[0],
             &of.energies[1],
             &of.energies[2],
-            &of.heat,
-            of.of_heat.data(),
-            of.by_temperature.data(),
-            &of.heat_by_temperature,
-            of.strain.data(),
-            of.increment.data(),
-            of.times,
-            &of.step,
-            &of.temperature,
-            &of.no_change,
-            &of.predefined,
-            &of.predefined,
-            of.name,
-            &of.n_normal,
-            &of.n_shear,
-            &of.n_all,
-            &of.n_states,
+            &of.heat.made,
+            of.heat.by_strain.data(),
+            of.heat.by_temperature.data(),
+            &of.heat.slope,
+            of.strains.before.data(),
+            of.strains.change.data(),
+            of.moment.begin,
+            &of.moment.step,
+            &of.heat.temperature,
+            &of.heat.change,
+            &of.heat.fields,
+            &of.heat.fields,
+            of.place.material,
+            &of.counts.normal,
+            &of.counts.shear,
+            &of.counts.all,
+            &of.counts.states,
             of.properties.data(),
-            &of.n_properties,
-            of.place.data(),
-            of.rotation.data(),
-            &of.step_ratio,
-            &of.length,
-            of.gradient_before.data(),
-            of.gradient.data(),
-            &of.element,
-            &of.point,
-            &of.layer,
-            &of.section,
-            of.numbers_of_step,
-            &of.number_of_increment,
-            sizeof(of.name));
+            &of.counts.properties,
+            of.place.x.data(),
+            of.strains.rotation.data(),
+            &of.moment.ratio,
+            &of.place.length,
+            of.strains.gradient_before.data(),
+            of.strains.gradient.data(),
+            &of.place.element,
+            &of.place.point,
+            &of.place.layer,
+            &of.place.section,
+            of.moment.step_number,
+            &of.moment.increment,
+            sizeof(of.place.material));
   }
 
 
@@ -191,7 +219,7 @@ namespace PeriDeal
   std::string UserStress::fault_of(const Call &call, const bool with_tangent) const
   {
     constexpr double alike   = 1e-6;
-    const int        n       = call.n;
+    const int        n       = call.counts.all;
     const auto       spoiled = [](const auto begin, const auto end) {
       return std::any_of(begin, end, [](const double value) { return value != guard; });
     };
@@ -208,10 +236,10 @@ namespace PeriDeal
       return "writes behind the end of STRESS or DDSDDE, which have NTENS = " + std::to_string(n) +
              " rows here (NDI = " + std::to_string(n_normal) +
              ", NSHR = " + std::to_string(n_shear) + "). Let it go by these numbers";
-    if (call.step_ratio < 1.)
+    if (call.moment.ratio < 1.)
       {
         std::ostringstream text;
-        text << "asks for a step of " << call.step_ratio
+        text << "asks for a step of " << call.moment.ratio
              << " times this one (PNEWDT). Give a smaller 'Time step' in section 'Time'";
         return text.str();
       }
@@ -253,12 +281,13 @@ namespace PeriDeal
     };
     text << "Entry 'User law' in section 'Material': '" << library->file_name << "' " << fault
          << ". It was asked at (";
-    list(call.place, n_shear == 3 ? 3 : 2);
-    text << "), element " << call.element << ", point " << call.point << ", at t = " << trial.time
-         << ", increment " << call.number_of_increment << ", from the strain ";
-    list(call.strain, call.n);
+    list(call.place.x, n_shear == 3 ? 3 : 2);
+    text << "), element " << call.place.element << ", point " << call.place.point
+         << ", at t = " << trial.time << ", increment " << call.moment.increment
+         << ", from the strain ";
+    list(call.strains.before, call.counts.all);
     text << " on by ";
-    list(call.increment, call.n);
+    list(call.strains.change, call.counts.all);
     text << '.';
     AssertThrow(false, UserError(text.str()));
     std::terminate();
@@ -269,8 +298,9 @@ namespace PeriDeal
   {
     const double *const before = trial.state;
     Call                call(*this, trial);
+    const bool          rests = call.rests(trial);
     std::copy_n(before, n_state(), next);
-    if (!call.rests || tangent != nullptr)
+    if (!rests || tangent != nullptr)
       {
         call.find_gradients();
 #ifdef DEBUG
@@ -287,9 +317,9 @@ namespace PeriDeal
           throw_fault(fault, call, trial);
       }
     Response result;
-    if (!call.rests)
+    if (!rests)
       {
-        for (int k = 0; k < call.n; ++k)
+        for (int k = 0; k < call.counts.all; ++k)
           {
             const unsigned int r = call.row[k];
             // Not the sum of both, which need not be this to the last digit.
@@ -300,7 +330,7 @@ namespace PeriDeal
         std::copy_n(call.energies.begin(), 3, next + energies_at);
         std::copy_n(call.statev.begin(), numbers.n_states, next + first_of_user);
       }
-    for (int k = 0; k < call.n; ++k)
+    for (int k = 0; k < call.counts.all; ++k)
       result.stress[rows_of_list[call.row[k]][0]][rows_of_list[call.row[k]][1]] =
         next[stress_at + call.row[k]];
     const auto lost = [](const double *const state) {
@@ -312,13 +342,14 @@ namespace PeriDeal
     result.dissipated       = lost(next) - lost(before);
     if (tangent == nullptr)
       return result;
-    *tangent = Tangent();
-    for (int a = 0; a < call.n; ++a)
-      for (int b = 0; b < call.n; ++b)
+    *tangent    = Tangent();
+    const int n = call.counts.all;
+    for (int a = 0; a < call.counts.all; ++a)
+      for (int b = 0; b < call.counts.all; ++b)
         {
           const auto &i = rows_of_list[call.row[a]], &j = rows_of_list[call.row[b]];
           (*tangent)[i[0]][i[1]][j[0]][j[1]] =
-            0.5 * (call.tangent[a + call.n * b] + call.tangent[b + call.n * a]);
+            0.5 * (call.tangent[a + n * b] + call.tangent[b + n * a]);
         }
     return result;
   }

@@ -6,6 +6,7 @@
 #include <perideal/scene/lists.h>
 #include <perideal/scene/material.h>
 #include <perideal/scene/orthotropy.h>
+#include <perideal/scene/user_properties.h>
 #include <perideal/scene/vector_conditions.h>
 
 #include <algorithm>
@@ -36,6 +37,52 @@ namespace PeriDeal
       for (unsigned int k = 0; k < of_phases.size(); ++k)
         of_phases[k] = in_phase(k);
       return {in_phase(-1), std::make_shared<const Regions>(phases.all()), of_phases};
+    }
+
+
+    /** An entry whose text the section itself reads. */
+    struct PlainEntry
+    {
+      std::string name;
+      EntryType   type;
+      std::string default_text, unit, words;
+    };
+
+
+    const std::vector<PlainEntry> &entries_of_laws()
+    {
+      static const std::vector<PlainEntry> list = {
+        {"Relaxation",
+         EntryType::list,
+         "",
+         "1, time",
+         "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with exp(-t/time). A time is that of the section `Time`."},
+        {"Bond force",
+         EntryType::formula,
+         "",
+         "1",
+         "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0."},
+        {"User law",
+         EntryType::text,
+         "",
+         "",
+         "With `Law = user`: a shared library with a `umat_` (Abaqus' arguments, small strains), or its source in Fortran or C, which is compiled by gfortran or cc (FC, CC). Its path, or that beside the scene. It has the moduli, too."},
+        {"User properties",
+         EntryType::list,
+         "",
+         "",
+         "With `Law = user`: the numbers PROPS of the law, separated by commas."},
+        {"User states",
+         EntryType::whole_number,
+         "0",
+         "1",
+         "With `Law = user`: how many numbers STATEV the law keeps at a point. Fields `state_1`, `state_2`, ... show them."},
+        {"Interfaces",
+         EntryType::list,
+         "",
+         "energy/length^2, force/length^2",
+         "Elasticity: what breaks between two phases of `Phases`, `name/name: fracture energy G`, with `Law = softening` also `, tensile strength f`; several separated by `;`. All bonds that lead from one to the other have these in place of those of the phases. `elsewhere` is what no region holds. Two phases may have the same moduli: a weak plane in one material."}};
+      return list;
     }
   } // namespace
 
@@ -94,18 +141,8 @@ namespace PeriDeal
       formula + " 0 or more.";
     declare(law.softening, "Softening", "exponential", {"linear", "bilinear", "exponential"}) =
       "With `Law = softening`: the stress over the opening. `bilinear` has its kink at a third of the strength (Petersson's, for concrete).";
-    declare("Relaxation", EntryType::list, "", "1, time") =
-      "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with exp(-t/time). A time is that of the section `Time`.";
-    declare("Bond force", EntryType::formula, "", "1") =
-      "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0.";
-    declare(law.user.library, "User law", "") =
-      "With `Law = user`: a shared library with a `umat_` (Abaqus' arguments, small strains), or its source in Fortran or C, which is compiled by gfortran or cc (FC, CC). Its path, or that beside the scene. It has the moduli, too.";
-    declare("User properties", EntryType::list, "", "") =
-      "With `Law = user`: the numbers PROPS of the law, separated by commas.";
-    declare("User states", EntryType::whole_number, "0", "1") =
-      "With `Law = user`: how many numbers STATEV the law keeps at a point. Fields `state_1`, `state_2`, ... show them.";
-    declare("Interfaces", EntryType::list, "", "energy/length^2, force/length^2") =
-      "Elasticity: what breaks between two phases of `Phases`, `name/name: fracture energy G`, with `Law = softening` also `, tensile strength f`; several separated by `;`. All bonds that lead from one to the other have these in place of those of the phases. `elsewhere` is what no region holds. Two phases may have the same moduli: a weak plane in one material.";
+    for (const PlainEntry &of : entries_of_laws())
+      declare(of.name, of.type, of.default_text, of.unit) = of.words;
     declare("Weibull modulus", EntryType::text, "", "1") =
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
     declare("Strength seed", EntryType::text) =
@@ -323,10 +360,13 @@ namespace PeriDeal
       const bool        is_user = law.kind == SolidLaw::user;
       const std::string file = "User law", numbers = "User properties", states = "User states";
       for (const std::string &entry : {file, numbers, states})
-        material.refuse(material.is_given(entry) && !is_user,
+        material.refuse((material.is_given(entry) ||
+                         (entry == numbers && !material.phases.text(entry).empty())) &&
+                          !is_user,
                         entry,
                         "is for 'Law = user'; 'Law' is '" + material.text("Law") +
                           "'. Leave one of them out.");
+      law.user.library = material.text(file);
       law.user.properties.clear();
       law.user.n_states = 0;
       if (!is_user)
@@ -338,15 +378,13 @@ namespace PeriDeal
                         modulus,
                         "is that of the other laws; 'Law = user' has its own, by 'User "
                         "properties'. Leave it out.");
-      if (!material.text(numbers).empty())
-        for (const std::string &number : split_list(material.text(numbers), ','))
-          law.user.properties.push_back(parse_number(number, material.where(numbers)));
+      law.user.properties = user_properties(material).front();
       law.user.n_states = parse_whole_number(material.text(states), material.where(states), 100000);
     }
 
 
     /** The entries of the law in the section, whose kind has been read. Throws UserError. */
-    void parse_law(const SceneSection &section, Material::Law &law)
+    void parse_law(const Material &section, Material::Law &law)
     {
       const auto belongs =
         [&](const std::string &entry, const SolidLaw kind, const std::string &name) {
@@ -387,6 +425,13 @@ namespace PeriDeal
                          force,
                          "is " + number_text(at_rest) + " at s = 0, where a bond has no force.");
         }
+      section.refuse(
+        law.kind == SolidLaw::formula && section.fracture_energy.has_value(),
+        "Fracture energy",
+        "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
+      parse_user_law(section, law);
+      refuse_softening(section);
+      refuse_plastic(section);
     }
   } // namespace
 
@@ -437,24 +482,12 @@ namespace PeriDeal
     if (fracture_energy && critical_stretch)
       error("Critical stretch", "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
-    for (const std::string entry : {"Law",
-                                    "Relaxation",
-                                    "Softening",
-                                    "Bond force",
-                                    "User law",
-                                    "User properties",
-                                    "User states",
-                                    "Interfaces"})
+    for (const std::string entry : {"Law", "Softening"})
       refuse_unless_elastic(entry, physics);
+    for (const PlainEntry &entry : entries_of_laws())
+      refuse_unless_elastic(entry.name, physics);
     parse_law(*this, law);
-    parse_user_law(*this, law);
-    refuse_softening(*this);
-    refuse_plastic(*this);
     law.interfaces = parse_interfaces(*this);
-    if (law.kind == SolidLaw::formula && fracture_energy)
-      error(
-        "Fracture energy",
-        "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
     law.orthotropy = parse_orthotropy(*this, physics, dim, plane);
     // No number: nobody may take it for uniform and isotropic.
     if (!law.orthotropy.young.empty() || law.kind == SolidLaw::user)

@@ -14,13 +14,13 @@ namespace PeriDeal
 {
   /**
    * A law of a shared library, with Abaqus' interface of a UMAT for small strains. Parameters: the
-   * three coordinates of a point, and the number of its material in the list of names. State:
+   * three coordinates of a point, and the number of its material in the list of them. State:
    * strain, stress, energies (elastic, plastic, by creep), work, then STATEV.
    *
-   * Stored and dissipated are what the library gives, SSE and SPD + SCD. Where it gives one of them
-   * the other is the rest of the work (of the mean of the stresses before and after each step), and
-   * where it gives none all work is stored. Where strain and time rest the accepted state stays, and
-   * the library is asked for its tangent alone.
+   * Stored and dissipated are what the library gives, SSE and SPD + SCD. Where it gives one of
+   * them the other is the rest of the work (of the mean of the stresses before and after each
+   * step), and where it gives none all work is stored. Where strain and time rest the accepted
+   * state stays, and the library is asked for its tangent alone.
    *
    * Throws UserError, with the place, the strain and the increment, for what is no number, what was
    * written behind STRESS, STATEV or DDSDDE, a tangent that is not its own transpose (by more than
@@ -30,12 +30,16 @@ namespace PeriDeal
   class UserStress : public StressLaw
   {
   public:
-    /** @param materials CMNAME of each */
+    struct OfMaterial
+    {
+      std::string         name; // CMNAME
+      std::vector<double> properties;
+    };
+
     struct Numbers
     {
-      std::vector<double>      properties;
-      unsigned int             n_states = 0;
-      std::vector<std::string> materials;
+      unsigned int            n_states = 0;
+      std::vector<OfMaterial> materials;
     };
 
     /** @param dim of the body; in two dimensions @p kind tells plane strain from plane stress */
@@ -68,6 +72,11 @@ namespace PeriDeal
     static constexpr unsigned int first_of_user = 6 + 6 + 3 + 1;
 
     struct Call;
+
+    const OfMaterial &material_of(const Trial &trial) const
+    {
+      return numbers.materials[static_cast<unsigned int>(trial.parameters[3] + 0.5)];
+    }
 
     /** What is wrong with what a call has left, or nothing. */
     std::string fault_of(const Call &call, const bool with_tangent) const;

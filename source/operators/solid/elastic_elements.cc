@@ -211,8 +211,6 @@ namespace PeriDeal
       for (unsigned int i = 0; i < cell.indices.size(); ++i)
         volumes(cell.indices[i]) += cell.volume(i);
     });
-    if (cells.stresses)
-      cells.stresses->throw_faults();
     thermal_energy = Utilities::MPI::sum(energy, all);
     if (!thermal_alone && breaking)
       set_all(breaking->bonds, nodes->locally_owned_size(), cells.factors);
@@ -257,6 +255,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::find_diagonal()
   {
+    cells.throw_faults();
     stiffness.for_each_entry([&](const unsigned int i, const auto column, const double value) {
       if (column == unknowns->local_to_global(i))
         stiffness_diagonal.local_element(i) = value;
@@ -699,9 +698,8 @@ namespace PeriDeal
       {
         const double dissipated = cells.stresses->accept(u, t);
         this->released_beside.by_law += dissipated;
-        const bool changes = dissipated > 0. || body.material.law.kind == SolidLaw::user;
-        if (changes && body.elasticity.is_static()) // as for a run that goes on from here
-          linearize(u);
+        if ((dissipated > 0. || cells.stresses->law().may_fail()) && body.elasticity.is_static())
+          linearize(u); // as for a run that goes on from here
       }
     if (!law)
       return;

@@ -7,6 +7,7 @@
 #include <perideal/laws/user_stress.h>
 #include <perideal/operators/solid/stress_laws.h>
 #include <perideal/scene/orthotropy.h>
+#include <perideal/scene/user_properties.h>
 
 #include <map>
 
@@ -34,10 +35,11 @@ namespace PeriDeal
     template <int dim>
     PlacedStressLaw<dim> user_stress(const BodyParameters<dim> &body)
     {
-      const Material::Law::User &user = body.material.law.user;
-      UserStress::Numbers        numbers{user.properties, user.n_states, {"MATERIAL"}};
+      const Material::Law::User &user       = body.material.law.user;
+      const auto                 properties = user_properties(body.material);
+      UserStress::Numbers        numbers{user.n_states, {{"MATERIAL", properties.front()}}};
       for (const std::string &phase : body.material.phases.all().names)
-        numbers.materials.push_back(phase);
+        numbers.materials.push_back({phase, properties[numbers.materials.size()]});
       return {
         std::make_unique<const UserStress>(UserLibrary::of_file(user.library,
                                                                 body.domain.files.folder,
