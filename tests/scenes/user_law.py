@@ -165,6 +165,8 @@ def elastic():
         expected = run_scene(moves, {**plane, **other, **MOVES})
         found = run_scene(moves, {**plane, **user(fortran), **MOVES})
         compare(table, f"{kind}, in motion, {name}", found, expected, 1e-12)
+        implicit = {**MOVES, "Time/Stepper": "newmark"}
+        compare(table, f"{kind}, newmark, {name}", run_scene(moves, {**plane, **user(fortran), **implicit}), run_scene(moves, {**plane, **other, **implicit}), 1e-10)
         balance = found.model(FE)["energy balance"]
         if kind == "plane stress":
             compare(table, f"{kind}, in motion, 'linear'", found, run_scene(moves, {**plane, **LINEAR, **MOVES}), 1e-12, ("ux", "uy"))

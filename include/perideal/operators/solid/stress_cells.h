@@ -83,7 +83,10 @@ namespace PeriDeal
                      const HangingNodes<dim> &hanging,
                      const Vector            &u) const;
 
-    /** Forces of all cells at time t, zero on hanging nodes. Collective. */
+    /**
+     * Forces of all cells at time t, zero on hanging nodes; of a law that may fail also where u is
+     * zero. Collective.
+     */
     void find_forces(Vector                  &y,
                      const HangingNodes<dim> &hanging,
                      const Vector            &u,
