@@ -5,14 +5,13 @@
     user_law.py elastic     the linear law in fixed-form Fortran and in C: patches and consoles at rest, in motion; what a call is told
     user_law.py plastic     prm/elasticity/user_law.f90 against `plastic` and a closed form, its tangent against differences
     user_law.py ranks       2 and 4 processes
-    user_law.py mistakes    broken libraries and entries: one message each, on 2 processes, too
+    user_law.py mistakes    broken libraries: one message each, on 2 processes, too (entries: tests/unit/scene_mistakes_test.cc)
 """
 
-import math
 import os
 import subprocess
 
-from scene_test import FE, SOURCE_DIR, Comparison, check, check_close, check_one_message, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
+from scene_test import FE, SOURCE_DIR, Comparison, check, check_close, check_less, check_one_message, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
 
 PLASTIC = os.path.join(SOURCE_DIR, "prm", "elasticity", "user_law.f90")
 BAR = "prm/elasticity/user_law.prm"
@@ -226,8 +225,8 @@ def plastic():
         for quantity in ("strain energy", "energy dissipated by the law", "work of loads and supports"):
             table.add(f"{kind}, {quantity}", found.total(quantity, FE), expected.total(quantity, FE), relative=1e-10)
         check(expected.total("energy dissipated by the law", FE) > 0.1 * expected.total("work of loads and supports", FE), f"{kind}: yields")
-        steps = [run.model(FE)["iterations"] if "iterations" in run.model(FE) else None for run in (found, expected)]
-        check(steps[0] == steps[1], f"{kind}: as many iterations: {steps}")
+        counts = [run.model(FE)["iterations"] for run in (found, expected)]
+        check_less(counts[0], 1.15 * counts[1], f"{kind}: iterations, 'plastic' has {counts[1]}")
     run = run_scene(BAR, {"Domain/Cells": "4, 2, 2"})
     slope = 1000 * 100 / 1100
     for time, force in ((1, 1), (5, 1 + 0.004 * slope), (7, 0.004 * slope - 1), (10, 0.004 * slope - 1 - 0.003 * slope)):
@@ -326,8 +325,8 @@ def mistakes():
     scene = write_file("console.prm", scene_of(CONSOLE, 2, solver="newton"), folder)
     good = write_file("good.c", IN_C, folder)
 
-    def fails(name, overrides, words, numbers=(1, 2)):
-        for n in numbers:
+    def fails(name, overrides, words):
+        for n in (1, 2):
             settings = {"Elasticity/Plane": "strain", "Output directory": os.path.join(folder, "results"), **STEADY, **overrides}
             status, stdout, stderr = run_perideal(["run", scene] + [word for entry, value in settings.items() for word in ("-s", f"{entry}={value}")], n, timeout=120)
             check(status == 1, f"{name}, {n} process(es): exit status {status}\n{stdout[-500:]}")
@@ -352,24 +351,11 @@ def mistakes():
                               ("lacks a routine", library("lacks.so", broken("getvrm_();").replace("void xit_", "void getvrm_(void);\nvoid xit_")), ["cannot be loaded", "getvrm_"]),
                               ("source with a mistake", write_file("wrong.f90", "subroutine umat(stress\nend\n", folder), ["cannot be compiled", "gfortran"])):
         fails(name, user(path), ["'User law'", *words])
-    fails("no library named", {"Material/Law": "user"}, ["'User law'", "is empty"], (1,))
-    fails("another law", {**LINEAR, "Material/User law": good}, ["'User law'", "is for 'Law = user'"], (1,))
-    fails("properties of another law", {**LINEAR, "Material/User properties": "1"}, ["'User properties'", "is for 'Law = user'"], (1,))
-    fails("states below 0", {**user(good), "Material/User states": "-1"}, ["'User states'", "-1"], (1,))
-    fails("phase", {**user(good), "Material/Phases/User properties": "steel: 1"}, ["'User properties'", "no phase 'steel'"], (1,))
-    fails("no number", {**user(good), "Material/User properties": "1, E"}, ["'User properties'", "E"], (1,))
-    fails("moduli", {**user(good), **LINEAR}, ["'Young modulus'", "'Law = user' has its own"], (1,))
-    fails("peridynamics", {**user(good), "Models": "peridynamics"}, ["'Law'", "'user'", "finite elements"], (1,))
-    fails("bond-based", {**user(good), "Models": "peridynamics", "Elasticity/Model": "bond-based"}, ["'Law'", "'user'", "finite elements"], (1,))
-    fails("coupled", {**user(good), "Models": "coupled", "Coupling/Zone": "x < 1"}, ["'Law'", "'user'", "finite elements"], (1,))
-    fails("linear", {**user(good), "Elasticity/Solver": "linear"}, ["'Solver'", "'Law = user'"], (1,))
-    fails("temperature", {**user(good), "Elasticity/Temperature change": "1", "Material/Thermal expansion": "1e-5"}, ["'Law'", "Temperature change"], (1,))
     # check tells the law, and finds a missing library without a run
     status, stdout, _ = run_perideal(["check", scene] + [word for entry, value in {**user(good, "1, 2, 3", 4), **STEADY}.items() for word in ("-s", f"{entry}={value}")])
     check(status == 0 and "good.c, properties: 3, states: 4" in stdout, f"check tells the law: {stdout[-1500:]}")
     status, _, stderr = run_perideal(["check", scene] + [word for entry, value in {**user("nowhere.so"), **STEADY}.items() for word in ("-s", f"{entry}={value}")])
     check(status == 1 and "is not there" in stderr, f"check finds that it is missing: {stderr[-500:]}")
-    check(math.isfinite(status), "done")
 
 
 if __name__ == "__main__":
