@@ -31,7 +31,8 @@ namespace PeriDeal
   /** The arguments of one call, with numbers behind lists that have to stay what they are. */
   struct UserStress::Call
   {
-    static constexpr unsigned int n_guards = 64;
+    // Of lists that a wrong number of rows or of states makes too short.
+    static constexpr unsigned int n_guards = 8, n_guards_of_states = 64;
 
     Call(const UserStress &law, const Trial &trial);
 
@@ -92,7 +93,7 @@ namespace PeriDeal
 
   UserStress::Call::Call(const UserStress &law, const Trial &trial)
     : umat(law.library->umat)
-    , statev(law.numbers.n_states + n_guards, guard)
+    , statev(law.numbers.n_states + n_guards_of_states, guard)
     , properties(law.material_of(trial).properties)
   {
     if (properties.empty())
