@@ -43,7 +43,8 @@ python3-matplotlib: pictures of the report
 python3-h5py: HDF5 files in Python"
 for_tests="\
 libgtest-dev: GoogleTest, unit tests
-libbenchmark-dev: Google Benchmark, speed measurements"
+libbenchmark-dev: Google Benchmark, speed measurements
+gfortran: Fortran, laws of users"
 useful="\
 ccache: keeps compiled files, so that the next build is quick
 libjs-chart.js: charts in the page of a study whose points tell their names"

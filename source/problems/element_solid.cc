@@ -515,6 +515,11 @@ namespace PeriDeal
       {
         ChosenSettings list;
         list.emplace_back("elements", "Q" + std::to_string(degree()));
+        if (const auto &law = scene.material.law; law.kind == SolidLaw::user)
+          list.emplace_back("law",
+                            law.user.library +
+                              ", properties: " + std::to_string(law.user.properties.size()) +
+                              ", states: " + std::to_string(law.user.n_states));
         if (model == ModelKind::coupled)
           {
             list.emplace_back("coupling", scene.coupling.scheme_text());
@@ -614,6 +619,8 @@ namespace PeriDeal
               for (const unsigned int q : values.quadrature_point_indices())
                 visit(values, q, indices, gradient_of(solution, values, q, indices));
             }
+        if (stresses)
+          stresses->throw_faults();
         solution.set_ghost_state(false);
       }
 

@@ -559,7 +559,8 @@ namespace PeriDeal
       balance["strain"] = energy.strain;
       balance["start"]  = energy.start;
       add("work", "work of loads and supports", energy.work);
-      if (scene.material.law.kind == SolidLaw::viscoelastic || scene.material.law.yields())
+      if (scene.material.law.kind == SolidLaw::viscoelastic ||
+          scene.material.law.kind == SolidLaw::user || scene.material.law.yields())
         add("dissipated by the law", "energy dissipated by the law", op().released().by_law);
       if (op().may_release_energy())
         {

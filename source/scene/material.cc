@@ -6,6 +6,7 @@
 #include <perideal/scene/lists.h>
 #include <perideal/scene/material.h>
 #include <perideal/scene/orthotropy.h>
+#include <perideal/scene/user_properties.h>
 #include <perideal/scene/vector_conditions.h>
 
 #include <algorithm>
@@ -42,6 +43,51 @@ namespace PeriDeal
     const std::string two =
       " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
     const std::string formula = ": a number or a formula of x, y, z.";
+
+    /** An entry whose text the section itself reads. */
+    struct PlainEntry
+    {
+      std::string name;
+      EntryType   type;
+      std::string default_text, unit, words;
+    };
+
+
+    const std::vector<PlainEntry> &entries_of_laws()
+    {
+      static const std::vector<PlainEntry> list = {
+        {"Relaxation",
+         EntryType::list,
+         "",
+         "1, time",
+         "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with exp(-t/time). A time is that of the section `Time`."},
+        {"Bond force",
+         EntryType::formula,
+         "",
+         "1",
+         "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0."},
+        {"User law",
+         EntryType::text,
+         "",
+         "",
+         "With `Law = user`: a shared library with a `umat_` (Abaqus' arguments, small strains), or its source in Fortran or C, which is compiled by gfortran or cc (FC, CC). Its path, or that beside the scene. It has the moduli, too."},
+        {"User properties",
+         EntryType::list,
+         "",
+         "",
+         "With `Law = user`: the numbers PROPS of the law, separated by commas."},
+        {"User states",
+         EntryType::whole_number,
+         "0",
+         "1",
+         "With `Law = user`: how many numbers STATEV the law keeps at a point. Fields `state_1`, `state_2`, ... show them."},
+        {"Interfaces",
+         EntryType::list,
+         "",
+         "energy/length^2, force/length^2",
+         "Elasticity: what breaks between two phases of `Phases`, `name/name: fracture energy G`, with `Law = softening` also `, tensile strength f`; several separated by `;`. All bonds that lead from one to the other have these in place of those of the phases. `elsewhere` is what no region holds. Two phases may have the same moduli: a weak plane in one material."}};
+      return list;
+    }
   } // namespace
 
 
@@ -83,8 +129,8 @@ namespace PeriDeal
     declare(law.kind,
             "Law",
             "linear",
-            {"linear", "viscoelastic", "plastic", "softening", "formula"}) =
-      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`).";
+            {"linear", "viscoelastic", "plastic", "softening", "formula", "user"}) =
+      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `user`: by a program of your own, a UMAT (`User law`), in finite elements.";
     entry("Tensile strength") =
       "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
       " The area under stress over opening is Fracture energy.";
@@ -96,12 +142,8 @@ namespace PeriDeal
       formula + " 0 or more.";
     declare(law.softening, "Softening", "exponential", {"linear", "bilinear", "exponential"}) =
       "With `Law = softening`: the stress over the opening. `bilinear` has its kink at a third of the strength (Petersson's, for concrete).";
-    declare("Relaxation", EntryType::list, "", "1, time") =
-      "With `Law = viscoelastic`: a Prony series, `share, time` for each term, several separated by `;`. The shear modulus at once is that of the moduli; each share of it fades with exp(-t/time). A time is that of the section `Time`.";
-    declare("Bond force", EntryType::formula, "", "1") =
-      "With `Law = formula`: of the stretch s of a bond and the damage of its ends, from 0 to 1, in units of the force of the linear law at s = 1: `s` is the linear law. 0 at s = 0.";
-    declare("Interfaces", EntryType::list, "", "energy/length^2, force/length^2") =
-      "Elasticity: what breaks between two phases of `Phases`, `name/name: fracture energy G`, with `Law = softening` also `, tensile strength f`; several separated by `;`. All bonds that lead from one to the other have these in place of those of the phases. `elsewhere` is what no region holds. Two phases may have the same moduli: a weak plane in one material.";
+    for (const PlainEntry &of : entries_of_laws())
+      declare(of.name, of.type, of.default_text, of.unit) = of.words;
     declare("Weibull modulus", EntryType::text, "", "1") =
       "The critical stretch of each node, given or that of its Fracture energy, is multiplied by a number from Weibull's distribution with this modulus and mean 1; a bond breaks at the smaller value of its ends. Needs Strength seed. Empty: no scatter.";
     declare("Strength seed", EntryType::text) =
@@ -313,6 +355,35 @@ namespace PeriDeal
     }
 
 
+    /** The entries of a law of the user, or that another one has none. Throws UserError. */
+    void parse_user_law(const Material &material, Material::Law &law)
+    {
+      const bool        is_user = law.kind == SolidLaw::user;
+      const std::string file = "User law", numbers = "User properties", states = "User states";
+      for (const std::string &entry : {file, numbers, states})
+        material.refuse((material.is_given(entry) ||
+                         (entry == numbers && !material.phases.text(entry).empty())) &&
+                          !is_user,
+                        entry,
+                        "is for 'Law = user'; 'Law' is '" + material.text("Law") +
+                          "'. Leave one of them out.");
+      law.user.library = material.text(file);
+      law.user.properties.clear();
+      law.user.n_states = 0;
+      if (!is_user)
+        return;
+      material.refuse(law.user.library.empty(), file, "is empty, which 'Law = user' needs.");
+      for (const std::string modulus :
+           {"Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio"})
+        material.refuse(!material.text(modulus).empty() || material.phases.gives(modulus),
+                        modulus,
+                        "is that of the other laws; 'Law = user' has its own, by 'User "
+                        "properties'. Leave it out.");
+      law.user.properties = user_properties(material).front();
+      law.user.n_states = parse_whole_number(material.text(states), material.where(states), 100000);
+    }
+
+
     /** The entries of the law in the section, whose kind has been read. Throws UserError. */
     void parse_law(const Material &section, Material::Law &law)
     {
@@ -355,6 +426,11 @@ namespace PeriDeal
                          force,
                          "is " + number_text(at_rest) + " at s = 0, where a bond has no force.");
         }
+      section.refuse(
+        law.kind == SolidLaw::formula && section.fracture_energy.has_value(),
+        "Fracture energy",
+        "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
+      parse_user_law(section, law);
       refuse_softening(section);
       refuse_plastic(section);
     }
@@ -408,16 +484,15 @@ namespace PeriDeal
            "Critical stretch",
            "'Fracture energy' is given, too: give one of the two.");
     parse_scatter();
-    for (const std::string entry : {"Law", "Relaxation", "Softening", "Bond force", "Interfaces"})
+    for (const std::string entry : {"Law", "Softening"})
       refuse_unless_elastic(entry, physics);
+    for (const PlainEntry &entry : entries_of_laws())
+      refuse_unless_elastic(entry.name, physics);
     parse_law(*this, law);
     law.interfaces = parse_interfaces(*this);
-    refuse(
-      law.kind == SolidLaw::formula && fracture_energy.has_value(),
-      "Fracture energy",
-      "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
     law.orthotropy = parse_orthotropy(*this, physics, dim, plane);
-    if (!law.orthotropy.young.empty()) // no number: nobody may take it for uniform and isotropic
+    // No number: nobody may take it for uniform and isotropic.
+    if (!law.orthotropy.young.empty() || law.kind == SolidLaw::user)
       given.properties.fill(MaterialProperty(Expression("1 + 0*x", where("Young moduli"))));
     else if (physics == Physics::elasticity)
       parse_moduli(dim, plane);

@@ -318,6 +318,8 @@ namespace PeriDeal
       declare(entry.name, EntryType::list, "", entry.unit) =
         entry.name +
         " of each phase: `name: list of numbers or formulas of x, y, z`, several separated by `;`, as many numbers as section `Material` has. A phase that is not named here has those of section `Material`.";
+    declare("User properties", EntryType::list) =
+      "With `Law = user`: the numbers PROPS of each phase, `name: numbers`, several separated by `;`. The law gets the name of the phase as CMNAME, too. A phase that is not named here has those of section `Material`.";
     parse();
   }
 
@@ -388,12 +390,15 @@ namespace PeriDeal
           has_material[k] = has_material[k] || (values[k].has_value() &&
                                                 (elastic ? entry.elasticity : entry.diffusion));
       }
+    std::vector<std::string> lists{"User properties"};
     for (const OrthotropicEntry &entry : orthotropic_entries())
-      for (const std::string &piece : split_list(text(entry.name), ';'))
+      lists.push_back(entry.name);
+    for (const std::string &entry : lists)
+      for (const std::string &piece : split_list(text(entry), ';'))
         {
           const auto found = std::find(regions->names.begin(),
                                        regions->names.end(),
-                                       name_and_value(piece, where(entry.name)).first);
+                                       name_and_value(piece, where(entry)).first);
           if (elastic && found != regions->names.end())
             has_material[found - regions->names.begin()] = true;
         }

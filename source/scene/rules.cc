@@ -678,6 +678,39 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
+    void refuse_user_law(const BodyParameters<dim> &body,
+                         const bool                 by_elements,
+                         const bool                 coupled)
+    {
+      if (body.material.law.kind != SolidLaw::user)
+        return;
+      const auto refuse = [&](const bool is_so, const std::string &why) {
+        body.material.refuse(is_so, "Law", "found 'user', " + why);
+      };
+      refuse(!by_elements || coupled,
+             "a law of stresses, which is for 'Models = finite elements' alone. Leave the others "
+             "out.");
+      refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
+      refuse(body.elasticity.has_full_kinematics(),
+             "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");
+      refuse(body.material.breaks(),
+             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
+      refuse(!body.cracks.tips.empty(),
+             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+      refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
+             "which knows no 'Temperature change' (section 'Elasticity').");
+      body.elasticity.refuse(
+        body.elasticity.solver == ElasticSolver::linear,
+        "Solver",
+        "is 'linear', but 'Law = user' in section 'Material' need not be. Use 'newton', 'conjugate "
+        "gradients', or 'dynamics'.");
+    }
+  } // namespace
+
+
+  namespace
+  {
+    template <int dim>
     void refuse_orthotropic_body(const BodyParameters<dim> &body,
                                  const bool                 by_elements,
                                  const bool                 coupled)
@@ -719,6 +752,7 @@ namespace PeriDeal
       "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
     refuse_softening_bonds(body, by_elements);
     refuse_plastic_body(body, by_elements, coupled);
+    refuse_user_law(body, by_elements, coupled);
     const bool is_warm = body.elasticity.computes_temperature ||
                          !is_zero(body.elasticity.temperature_change);
     material.refuse(by_elements && is_warm,

@@ -134,6 +134,7 @@ namespace PeriDeal
     const auto &forces = initial_and_source.body_force;
     return general.physics == Physics::elasticity && elasticity.is_static() &&
            (warms_slowly() || !cracks.tips.empty() || material.law.kind == SolidLaw::viscoelastic ||
+            (material.law.kind == SolidLaw::user && !time.steady) || // which may know time
             boundary_conditions.depends_on_time() ||
             std::any_of(forces.begin(), forces.end(), [](const auto &force) {
               return force.depends_on_time();

@@ -35,7 +35,7 @@ namespace PeriDeal
     double wave_speed(const Scene<dim> &scene, const Point<dim> &middle)
     {
       // Of a mesh from a file neither the place nor, in its regions, the material is known yet.
-      if (!scene.domain.has_lattice())
+      if (!scene.domain.has_lattice() || scene.material.law.kind == SolidLaw::user)
         return std::numeric_limits<double>::quiet_NaN();
       try
         {

@@ -261,6 +261,8 @@ namespace PeriDeal
     for (const auto &[name, value] : problem.settings())
       if (name == "operator form")
         progress.line("  form: " + value);
+      else if (name == "law")
+        progress.line("  law: " + value);
       else if (name == "calibration" && value.find("because") != std::string::npos)
         progress.line("  calibration: " + value);
     if (const CouplingCertificate *certificate = problem.examined())

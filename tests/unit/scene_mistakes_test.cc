@@ -243,6 +243,36 @@ Material/Law=formula & Material/Bond force=s & Models=finite elements & Elastici
   }
 
 
+  TEST(SceneMistakes, of_laws_of_users)
+  {
+    expect_said(elastic_and({"Models=finite elements",
+                             "Material/Bulk modulus=",
+                             "Material/Shear modulus=",
+                             "Material/Young modulus=",
+                             "Material/Poisson ratio=",
+                             "Material/Law=user",
+                             "Material/User law=law.so",
+                             "Elasticity/Solver=newton"}),
+                R"(
+Material/User law= => 'User law' | is empty | 'Law = user'
+Material/User properties=1, E => 'User properties' | E
+Material/User states=-1 => 'User states' | -1
+Material/User states=1.5 => 'User states' | 1.5
+Material/Young modulus=1 => 'Young modulus' | 'Law = user' | 'User properties'
+Material/Law=linear => 'User law' | 'Law = user' | 'linear'
+Material/Law=linear & Material/User law= & Material/User properties=1 => 'User properties' | 'Law = user' | 'linear'
+Material/Phases/User properties=core: 1, 2 => 'User properties' | no phase 'core'
+Models=peridynamics => 'Law' | 'user' | 'Models = finite elements'
+Models=peridynamics & Elasticity/Model=bond-based => 'Law' | 'user' | 'Models = finite elements'
+Models=coupled & Coupling/Zone=everywhere => 'Law' | 'user' | 'Models = finite elements'
+Elasticity/Solver=linear => 'Solver' | 'Law = user' | 'newton'
+Material/Fracture energy=1 => 'Law' | 'user' | 'Fracture energy'
+Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'user' | 'Temperature change'
+Elasticity/Kinematics=full => 'Law' | 'user' | 'Kinematics = linear'
+)");
+  }
+
+
   TEST(SceneMistakes, of_orthotropic_bodies)
   {
     expect_said(elastic_and({"Models=finite elements",

@@ -57,6 +57,10 @@ namespace PeriDeal
       const double *parameters;
       const double *state;                // the accepted one
       double        time = 0., step = 0.; // at its end, since the accepted one
+      double        instant   = 1.;       // what may stand for a step of no time
+      unsigned int  increment = 1;        // which step
+      double        length    = 0.;       // of the element around the point
+      unsigned int  element = 0, point = 0;
     };
 
     virtual ~StressLaw() = default;
@@ -65,6 +69,12 @@ namespace PeriDeal
 
     /** The numbers of a state, which are 0 before anything has happened. */
     virtual unsigned int n_state() const = 0;
+
+    /** update() may throw a UserError. */
+    virtual bool may_fail() const
+    {
+      return false;
+    }
 
     /**
      * The stress is the derivative of what is stored and dissipated by the strain.

@@ -255,6 +255,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::find_diagonal()
   {
+    cells.throw_faults();
     stiffness.for_each_entry([&](const unsigned int i, const auto column, const double value) {
       if (column == unknowns->local_to_global(i))
         stiffness_diagonal.local_element(i) = value;
@@ -639,7 +640,7 @@ namespace PeriDeal
     if (cells.stresses && nonlinear())
       {
         const WithGhosts ghosts(u);
-        return cells.stresses->find_forces(y, hanging, u);
+        return cells.stresses->find_forces(y, hanging, u, t);
       }
     if (!law)
       return multiply(y, u);
@@ -695,10 +696,10 @@ namespace PeriDeal
     const WithGhosts ghosts(u);
     if (cells.stresses)
       {
-        const double dissipated = cells.stresses->accept(u);
+        const double dissipated = cells.stresses->accept(u, t);
         this->released_beside.by_law += dissipated;
-        if (dissipated > 0. && body.elasticity.is_static()) // as for a run that goes on from here
-          linearize(u);
+        if ((dissipated > 0. || cells.stresses->law().may_fail()) && body.elasticity.is_static())
+          linearize(u); // as for a run that goes on from here
       }
     if (!law)
       return;

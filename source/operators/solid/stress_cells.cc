@@ -5,10 +5,12 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
+#include <perideal/base/user_error.h>
 #include <perideal/mesh/node_keys.h>
 #include <perideal/operators/solid/stress_cells.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace PeriDeal
 {
@@ -25,7 +27,12 @@ namespace PeriDeal
     // A body that does not flow is what it is without the projection.
     const bool projects = body.material.law.kind != SolidLaw::linear &&
                           stress_state_of(dim, body.elasticity.plane) != StressState::plane_stress;
-    return std::make_unique<StressCells>(dofs, std::move(law), projects, cracks);
+    const double end = body.cracks.end_time;
+    return std::make_unique<StressCells>(dofs,
+                                         std::move(law),
+                                         projects,
+                                         cracks,
+                                         end > 0. ? 1e-9 * end : 1.);
   }
 
 
@@ -33,11 +40,13 @@ namespace PeriDeal
   StressCells<dim>::StressCells(const DoFHandler<dim> &dofs,
                                 PlacedStressLaw<dim>   law,
                                 const bool             projects,
-                                const CutCells<dim>   &cracks)
+                                const CutCells<dim>   &cracks,
+                                const double           instant)
     : dofs(dofs)
     , of_points(std::move(law.law))
     , cracks(cracks)
     , first(dofs.get_triangulation().n_active_cells(), 0)
+    , clock{instant}
     , at{ProjectedStrains<dim>(dofs.get_fe(), projects),
          std::vector<types::global_dof_index>(dofs.get_fe().n_dofs_per_cell()),
          dealii::Vector<double>(dim * dofs.get_fe().n_dofs_per_cell()),
@@ -74,17 +83,39 @@ namespace PeriDeal
     at.u = 0.;
     for (unsigned int i = 0; u != nullptr && i < at.u.size(); ++i)
       at.u(i) = (*u)(dim * at.nodes[i / dim] + i % dim);
+    StressLaw::Trial trial;
+    trial.instant = clock.instant;
+    if (u != nullptr)
+      {
+        trial.time      = clock.now;
+        trial.step      = clock.now - clock.accepted;
+        trial.increment = clock.n_steps + 1;
+      }
+    trial.length           = std::pow(cell->measure(), 1. / dim) / dofs.get_fe().degree;
+    trial.element          = cell->global_active_cell_index();
     const double *of_point = all_parameters.data() + first_of(cell) * of_points->n_parameters();
     for (unsigned int q = 0; q < at.points.size(); ++q)
       {
         LawPoint &point = at.points[q];
         point.weight =
           (u == nullptr ? 1. : cracks.kept_of_removed(cell)) * at.strains.values().JxW(q);
-        point.response = of_points->update({at.strains.strain(q, at.u),
-                                            of_point + q * of_points->n_parameters(),
-                                            accepted + q * of_points->n_state()},
-                                           point.state.data(),
-                                           with_tangents ? &point.tangent : nullptr);
+        trial.strain     = at.strains.strain(q, at.u);
+        trial.parameters = of_point + q * of_points->n_parameters();
+        trial.state      = accepted + q * of_points->n_state();
+        trial.point      = q;
+        try
+          {
+            point.response = of_points->update(trial,
+                                               point.state.data(),
+                                               with_tangents ? &point.tangent : nullptr);
+          }
+        catch (const UserError &error)
+          {
+            if (fault.empty())
+              fault = error.message();
+            point.response = {};
+            point.tangent  = 0.;
+          }
       }
   }
 
@@ -149,16 +180,23 @@ namespace PeriDeal
             unknowns[i] = dim * at.nodes[i / dim] + i % dim;
           matrix.add(hanging, of_cell, unknowns);
         }
+    throw_faults();
   }
 
 
   template <int dim>
   void StressCells<dim>::find_forces(Vector                  &y,
                                      const HangingNodes<dim> &hanging,
-                                     const Vector            &u) const
+                                     const Vector            &u,
+                                     const double             t) const
   {
+    clock.now = t;
+    y         = 0.;
+    // Solvers ask for the loads in this way. A law of others need not get through a step back to no
+    // strain at once.
+    if (of_points->may_fail() && u.linfty_norm() == 0.)
+      return;
     std::vector<Tensor<1, dim>> forces(at.nodes.size());
-    y = 0.;
     for_each(u, [&](const Cell &, const std::vector<LawPoint> &points) {
       std::fill(forces.begin(), forces.end(), Tensor<1, dim>());
       for (unsigned int q = 0; q < points.size(); ++q)
@@ -168,6 +206,7 @@ namespace PeriDeal
         for (unsigned int d = 0; d < dim; ++d)
           y(dim * at.nodes[a] + d) += forces[a][d];
     });
+    throw_faults();
     y.compress(VectorOperation::add);
     hanging.condense(y);
     hanging.set(y, 0.);
@@ -182,24 +221,42 @@ namespace PeriDeal
       for (const LawPoint &point : points)
         sum += point.weight * point.response.stored;
     });
+    throw_faults();
     return Utilities::MPI::sum(sum, dofs.get_communicator());
   }
 
 
   template <int dim>
-  double StressCells<dim>::accept(const Vector &u)
+  double StressCells<dim>::accept(const Vector &u, const double t)
   {
     double dissipated = 0.;
     begun             = true;
+    clock.now         = t;
+    bool is_step      = t > clock.accepted;
     for_each(u, [&](const Cell &cell, const std::vector<LawPoint> &points) {
       auto next = states.begin() + first_of(cell) * of_points->n_state();
       for (const LawPoint &point : points)
         {
           dissipated += point.weight * point.response.dissipated;
-          next = std::copy(point.state.begin(), point.state.end(), next);
+          is_step = is_step || !std::equal(point.state.begin(), point.state.end(), next);
+          next    = std::copy(point.state.begin(), point.state.end(), next);
         }
     });
+    throw_faults();
+    clock.accepted = t;
+    clock.n_steps += Utilities::MPI::max(is_step ? 1u : 0u, dofs.get_communicator());
     return Utilities::MPI::sum(dissipated, dofs.get_communicator());
+  }
+
+
+  template <int dim>
+  void StressCells<dim>::throw_faults() const
+  {
+    if (!of_points->may_fail())
+      return;
+    const std::string of_this = std::move(fault);
+    fault.clear();
+    throw_on_all_if_any(dofs.get_communicator(), of_this);
   }
 
 
@@ -224,6 +281,9 @@ namespace PeriDeal
           }
     };
     archive.exchange("begun", begun);
+    archive.exchange("time", clock.accepted);
+    archive.exchange("steps", clock.n_steps);
+    clock.now = clock.accepted;
     for_each_cell([&](auto value, auto state) { std::copy_n(state, n_values, value); });
     archive.exchange("states of points", values, node_keys(cells));
     for_each_cell([&](auto value, auto state) { std::copy_n(value, n_values, state); });

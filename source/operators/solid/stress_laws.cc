@@ -4,8 +4,10 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/laws/j2_plasticity.h>
 #include <perideal/laws/linear_stress.h>
+#include <perideal/laws/user_stress.h>
 #include <perideal/operators/solid/stress_laws.h>
 #include <perideal/scene/orthotropy.h>
+#include <perideal/scene/user_properties.h>
 
 #include <map>
 
@@ -29,12 +31,38 @@ namespace PeriDeal
     }
 
 
+    /** Collective. */
+    template <int dim>
+    PlacedStressLaw<dim> user_stress(const BodyParameters<dim> &body)
+    {
+      const Material::Law::User &user       = body.material.law.user;
+      const auto                 properties = user_properties(body.material);
+      UserStress::Numbers        numbers{user.n_states, {{"MATERIAL", properties.front()}}};
+      for (const std::string &phase : body.material.phases.all().names)
+        numbers.materials.push_back({phase, properties[numbers.materials.size()]});
+      return {
+        std::make_unique<const UserStress>(UserLibrary::of_file(user.library,
+                                                                body.domain.files.folder,
+                                                                body.domain.files.communicator),
+                                           dim,
+                                           stress_state_of(dim, body.elasticity.plane),
+                                           numbers),
+        [&material = body.material](const Point<dim> &p) {
+          std::vector<double> parameters(3, 0.);
+          for (unsigned int d = 0; d < dim; ++d)
+            parameters[d] = p[d];
+          parameters.push_back(material.phases.all().at(p) + 1.);
+          return parameters;
+        }};
+    }
+
+
     /** The one list of laws of stresses. */
     template <int dim>
     const std::map<SolidLaw, PlacedStressLaw<dim> (*)(const BodyParameters<dim> &)> &makers()
     {
       static const std::map<SolidLaw, PlacedStressLaw<dim> (*)(const BodyParameters<dim> &)> list =
-        {{SolidLaw::plastic, j2_plasticity<dim>}};
+        {{SolidLaw::plastic, j2_plasticity<dim>}, {SolidLaw::user, user_stress<dim>}};
       return list;
     }
   } // namespace

@@ -135,6 +135,13 @@ namespace PeriDeal
     /** As ElasticElements::lowest_remainder(), of own cells. */
     double lowest_remainder() const;
 
+    /** As StressCells::throw_faults(). Collective. */
+    void throw_faults() const
+    {
+      if (stresses)
+        stresses->throw_faults();
+    }
+
     /** Data::shear is to be made. */
     bool with_shear = false;
 

@@ -10,6 +10,7 @@
 #include <perideal/operators/solid/stress_laws.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -19,6 +20,10 @@ namespace PeriDeal
    * makes of the strains at quadrature points (ProjectedStrains), and the states of these, which
    * are those of the last step that was accepted. Ghosts of displacements are up to date. Cells
    * that a crack cuts carry what it leaves of them. Not collective unless stated.
+   *
+   * The law is asked about the way from the last state that was accepted to the time for which
+   * forces were found last. What it throws is kept until throw_faults(), and stresses are zero
+   * there: all that is collective calls that, others have to.
    */
   template <int dim>
   class StressCells
@@ -35,19 +40,21 @@ namespace PeriDeal
       StressLaw::Tangent  tangent;
     };
 
-    /** The law of the scene; null: it has none for stresses. */
+    /** The law of the scene; null: it has none for stresses. Collective. Throws UserError. */
     static std::unique_ptr<StressCells> of_scene(const dealii::DoFHandler<dim> &dofs,
                                                  const BodyParameters<dim>     &body,
                                                  const CutCells<dim>           &cracks);
 
     /**
      * @param projects the dilatation (ProjectedStrains)
+     * @param instant  a time that is as good as none
      * @param cracks   like @p dofs to outlive this
      */
     StressCells(const dealii::DoFHandler<dim> &dofs,
                 PlacedStressLaw<dim>           law,
                 const bool                     projects,
-                const CutCells<dim>           &cracks);
+                const CutCells<dim>           &cracks,
+                const double                   instant);
 
     const StressLaw &law() const
     {
@@ -71,13 +78,19 @@ namespace PeriDeal
                         dealii::FullMatrix<double> &matrix,
                         const Vector               *u = nullptr) const;
 
-    /** Add the tangents of own cells at u. */
+    /** Add the tangents of own cells at u. Collective. */
     void add_tangent(ElementMatrix<dim, dim> &matrix,
                      const HangingNodes<dim> &hanging,
                      const Vector            &u) const;
 
-    /** Forces of all cells, zero on hanging nodes. Collective. */
-    void find_forces(Vector &y, const HangingNodes<dim> &hanging, const Vector &u) const;
+    /**
+     * Forces of all cells at time t, zero on hanging nodes; of a law that may fail also where u is
+     * zero. Collective.
+     */
+    void find_forces(Vector                  &y,
+                     const HangingNodes<dim> &hanging,
+                     const Vector            &u,
+                     const double             t) const;
 
     /** Stored by all cells. Collective. */
     double energy(const Vector &u) const;
@@ -89,7 +102,10 @@ namespace PeriDeal
     }
 
     /** The state u is accepted. Returns what was dissipated on the way to it. Collective. */
-    double accept(const Vector &u);
+    double accept(const Vector &u, const double t);
+
+    /** Throw what the law has thrown on any process. Collective. */
+    void throw_faults() const;
 
     /** Collective. */
     void exchange(Archive &archive);
@@ -113,6 +129,14 @@ namespace PeriDeal
     std::vector<std::size_t>               first; // by active cell index
     std::vector<double>                    all_parameters, states;
     bool                                   begun = false;
+
+    struct Clock
+    {
+      double       instant, accepted = 0., now = 0.;
+      unsigned int n_steps = 0; // in which something has happened, or time has passed
+    };
+    mutable Clock       clock;
+    mutable std::string fault; // of this process
 
     /** The cell that is looked at. */
     struct Looked

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/laws/user_stress.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cfenv>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr double guard = -6.02214076e23; // what nobody writes by chance
+
+    /** Abaqus' order. */
+    constexpr unsigned int rows_of_list[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
+    // Of a state.
+    constexpr unsigned int stress_at = 6, energies_at = 12, work_at = 15;
+  } // namespace
+
+
+  /** The arguments of one call, with numbers behind lists that have to stay what they are. */
+  struct UserStress::Call
+  {
+    // Of lists that a wrong number of rows or of states makes too short.
+    static constexpr unsigned int n_guards = 8, n_guards_of_states = 64;
+
+    Call(const UserStress &law, const Trial &trial);
+
+    /** From the accepted strain to the new one, by which displacement gradients. */
+    void find_gradients();
+
+    static void make(void *const call);
+
+    const Umat                        umat;
+    std::array<unsigned int, 6>       row{};
+    std::array<double, 6 + n_guards>  stress{};
+    std::array<double, 36 + n_guards> tangent{};
+    std::vector<double>               statev, properties;
+    std::array<double, 3>             energies{};
+
+    struct Strains
+    {
+      std::array<double, 6> before{}, change{};
+      std::array<double, 9> rotation{{1., 0., 0., 0., 1., 0., 0., 0., 1.}},
+        gradient_before{rotation}, gradient{rotation};
+    } strains;
+
+    struct Place
+    {
+      std::array<double, 3> x{};
+      double                length;
+      char                  material[80];
+      int                   element, point, layer = 1, section = 1;
+    } place;
+
+    struct Moment
+    {
+      double begin[2], step, ratio = 1.;
+      int    step_number[4]{1, 0, 0, 0}, increment;
+    } moment;
+
+    struct Counts
+    {
+      int normal, shear, all, states, properties;
+    } counts;
+
+    /** Of what a body without a temperature has none. */
+    struct Heat
+    {
+      std::array<double, 6> by_strain{}, by_temperature{};
+      double                made = 0., slope = 0., temperature = 0., change = 0., fields = 0.;
+    } heat;
+
+    /** Neither strain nor time goes on. */
+    bool rests(const Trial &trial) const
+    {
+      const auto &change = strains.change;
+      return !(trial.step > 0.) &&
+             std::all_of(change.begin(), change.end(), [](const double by) { return by == 0.; });
+    }
+  };
+
+
+  UserStress::Call::Call(const UserStress &law, const Trial &trial)
+    : umat(law.library->umat)
+    , statev(law.numbers.n_states + n_guards_of_states, guard)
+    , properties(law.material_of(trial).properties)
+  {
+    if (properties.empty())
+      properties.push_back(0.); // an address, at least
+    counts = {static_cast<int>(law.n_normal),
+              static_cast<int>(law.n_shear),
+              static_cast<int>(law.n_normal + law.n_shear),
+              static_cast<int>(law.numbers.n_states),
+              static_cast<int>(law.material_of(trial).properties.size())};
+    for (int k = 0; k < counts.all; ++k)
+      row[k] = k < counts.normal ? k : 3 + k - counts.normal;
+    const int n = counts.all;
+    std::fill(stress.begin() + n, stress.end(), guard);
+    std::fill(tangent.begin() + n * n, tangent.end(), guard);
+    for (int k = 0; k < n; ++k)
+      {
+        const auto  &at   = rows_of_list[row[k]];
+        const double size = row[k] < 3 ? 1. : 2.;
+        strains.before[k] = trial.state[row[k]];
+        strains.change[k] = size * trial.strain[at[0]][at[1]] - strains.before[k];
+        stress[k]         = trial.state[stress_at + row[k]];
+      }
+    std::copy_n(trial.state + energies_at, 3, energies.begin());
+    std::copy_n(trial.state + first_of_user, counts.states, statev.begin());
+    // A first load that is put on at once has taken its instant.
+    const double begun = trial.increment > 1 ? trial.instant : 0.;
+    moment.begin[0] = moment.begin[1] = std::max(trial.time - trial.step, begun);
+    moment.step                       = trial.step > 0. ? trial.step : trial.instant;
+    moment.increment                  = trial.increment;
+    std::copy_n(trial.parameters, 3, place.x.begin());
+    place.length                = trial.length;
+    place.element               = trial.element + 1;
+    place.point                 = trial.point + 1;
+    const std::string &material = law.material_of(trial).name;
+    std::memset(place.material, ' ', sizeof(place.material));
+    std::transform(material.begin(),
+                   material.begin() + std::min(material.size(), sizeof(place.material)),
+                   place.material,
+                   [](const unsigned char c) { return std::toupper(c); });
+  }
+
+
+  void UserStress::Call::find_gradients()
+  {
+    for (int k = 0; k < counts.all; ++k)
+      {
+        const auto  &at   = rows_of_list[row[k]];
+        const double size = row[k] < 3 ? 1. : 0.5;
+        const auto   add  = [&](const unsigned int entry) {
+          strains.gradient_before[entry] += size * strains.before[k];
+          strains.gradient[entry] += size * (strains.before[k] + strains.change[k]);
+        };
+        add(at[0] + 3 * at[1]);
+        if (at[0] != at[1])
+          add(at[1] + 3 * at[0]);
+      }
+  }
+
+
+  void UserStress::Call::make(void *const call)
+  {
+    Call &of = *static_cast<Call *>(call);
+    of.umat(of.stress.data(),
+            of.statev.data(),
+            of.tangent.data(),
+            &of.energies[0],
+            &of.energies[1],
+            &of.energies[2],
+            &of.heat.made,
+            of.heat.by_strain.data(),
+            of.heat.by_temperature.data(),
+            &of.heat.slope,
+            of.strains.before.data(),
+            of.strains.change.data(),
+            of.moment.begin,
+            &of.moment.step,
+            &of.heat.temperature,
+            &of.heat.change,
+            &of.heat.fields,
+            &of.heat.fields,
+            of.place.material,
+            &of.counts.normal,
+            &of.counts.shear,
+            &of.counts.all,
+            &of.counts.states,
+            of.properties.data(),
+            &of.counts.properties,
+            of.place.x.data(),
+            of.strains.rotation.data(),
+            &of.moment.ratio,
+            &of.place.length,
+            of.strains.gradient_before.data(),
+            of.strains.gradient.data(),
+            &of.place.element,
+            &of.place.point,
+            &of.place.layer,
+            &of.place.section,
+            of.moment.step_number,
+            &of.moment.increment,
+            sizeof(of.place.material));
+  }
+
+
+  UserStress::UserStress(const std::shared_ptr<const UserLibrary> &library,
+                         const unsigned int                        dim,
+                         const StressState                         kind,
+                         const Numbers                            &numbers)
+    : library(library)
+    , n_normal(kind == StressState::plane_stress ? 2 : 3)
+    , n_shear(dim == 3 ? 3 : 1)
+    , numbers(numbers)
+  {}
+
+
+  std::vector<std::pair<std::string, unsigned int>> UserStress::shown() const
+  {
+    std::vector<std::pair<std::string, unsigned int>> list;
+    for (unsigned int k = 0; k < numbers.n_states; ++k)
+      list.emplace_back("state_" + std::to_string(k + 1), first_of_user + k);
+    return list;
+  }
+
+
+  std::string UserStress::fault_of(const Call &call, const bool with_tangent) const
+  {
+    constexpr double alike   = 1e-6;
+    const int        n       = call.counts.all;
+    const auto       spoiled = [](const auto begin, const auto end) {
+      return std::any_of(begin, end, [](const double value) { return value != guard; });
+    };
+    const auto finite = [](const auto begin, const auto count) {
+      return std::all_of(begin, begin + count, [](const double value) {
+        return std::isfinite(value);
+      });
+    };
+    if (spoiled(call.statev.begin() + numbers.n_states, call.statev.end()))
+      return "writes more states than 'User states' in section 'Material', which is " +
+             std::to_string(numbers.n_states) + ". Give as many as it has";
+    if (spoiled(call.stress.begin() + n, call.stress.end()) ||
+        spoiled(call.tangent.begin() + n * n, call.tangent.end()))
+      return "writes behind the end of STRESS or DDSDDE, which have NTENS = " + std::to_string(n) +
+             " rows here (NDI = " + std::to_string(n_normal) +
+             ", NSHR = " + std::to_string(n_shear) + "). Let it go by these numbers";
+    if (call.moment.ratio < 1.)
+      {
+        std::ostringstream text;
+        text << "asks for a step of " << call.moment.ratio
+             << " times this one (PNEWDT). Give a smaller 'Time step' in section 'Time'";
+        return text.str();
+      }
+    if (!finite(call.stress.begin(), n))
+      return "gives a stress that is no number";
+    if (!finite(call.energies.begin(), 3) || !finite(call.statev.begin(), numbers.n_states))
+      return "gives an energy or a state that is no number";
+    if (!with_tangent)
+      return "";
+    if (!finite(call.tangent.begin(), n * n))
+      return "gives a tangent (DDSDDE) that is no number";
+    double largest = 0., gap = 0.;
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b < n; ++b)
+        {
+          largest = std::max(largest, std::abs(call.tangent[a + n * b]));
+          gap     = std::max(gap, std::abs(call.tangent[a + n * b] - call.tangent[b + n * a]));
+        }
+    if (gap <= alike * largest)
+      return "";
+    std::ostringstream text;
+    text << "gives a tangent (DDSDDE) that is not symmetric: entries differ from those across the "
+            "diagonal by up to "
+         << gap / largest
+         << " times the largest. The solvers of bodies at rest need a symmetric one: let the law "
+            "give its symmetric part, with which Newton takes more iterations and finds the same, "
+            "or use 'Solver = dynamics' in section 'Elasticity', which asks for it at zero strain "
+            "alone";
+    return text.str();
+  }
+
+
+  void UserStress::throw_fault(const std::string &fault, const Call &call, const Trial &trial) const
+  {
+    std::ostringstream text;
+    const auto         list = [&](const auto &values, const unsigned int count) {
+      for (unsigned int k = 0; k < count; ++k)
+        text << (k > 0 ? ", " : "") << values[k];
+    };
+    text << "Entry 'User law' in section 'Material': '" << library->file_name << "' " << fault
+         << ". It was asked at (";
+    list(call.place.x, n_shear == 3 ? 3 : 2);
+    text << "), element " << call.place.element << ", point " << call.place.point
+         << ", at t = " << trial.time << ", increment " << call.moment.increment
+         << ", from the strain ";
+    list(call.strains.before, call.counts.all);
+    text << " on by ";
+    list(call.strains.change, call.counts.all);
+    text << '.';
+    AssertThrow(false, UserError(text.str()));
+    std::terminate();
+  }
+
+
+  StressLaw::Response UserStress::update(const Trial &trial, double *next, Tangent *tangent) const
+  {
+    const double *const before = trial.state;
+    Call                call(*this, trial);
+    const bool          rests = call.rests(trial);
+    std::copy_n(before, n_state(), next);
+    if (!rests || tangent != nullptr)
+      {
+        call.find_gradients();
+#ifdef DEBUG
+        std::fenv_t exceptions; // deal.II stops at operations that the law may do
+        feholdexcept(&exceptions);
+#endif
+        const bool is_back = comes_back(Call::make, &call);
+#ifdef DEBUG
+        fesetenv(&exceptions);
+#endif
+        const std::string fault = is_back ? fault_of(call, tangent != nullptr) :
+                                            "has ended the run (XIT)";
+        if (!fault.empty())
+          throw_fault(fault, call, trial);
+      }
+    Response result;
+    if (!rests)
+      {
+        for (int k = 0; k < call.counts.all; ++k)
+          {
+            const unsigned int r = call.row[k];
+            // Not the sum of both, which need not be this to the last digit.
+            next[r] = (r < 3 ? 1. : 2.) * trial.strain[rows_of_list[r][0]][rows_of_list[r][1]];
+            next[stress_at + r] = call.stress[k];
+            next[work_at] += 0.5 * (before[stress_at + r] + call.stress[k]) * (next[r] - before[r]);
+          }
+        std::copy_n(call.energies.begin(), 3, next + energies_at);
+        std::copy_n(call.statev.begin(), numbers.n_states, next + first_of_user);
+      }
+    for (int k = 0; k < call.counts.all; ++k)
+      result.stress[rows_of_list[call.row[k]][0]][rows_of_list[call.row[k]][1]] =
+        next[stress_at + call.row[k]];
+    const auto lost = [](const double *const state) {
+      const double given = state[energies_at + 1] + state[energies_at + 2];
+      return given == 0. && state[energies_at] != 0. ? state[work_at] - state[energies_at] : given;
+    };
+    const bool gives_stored = next[energies_at] != 0. || before[energies_at] != 0.;
+    result.stored           = gives_stored ? next[energies_at] : next[work_at] - lost(next);
+    result.dissipated       = lost(next) - lost(before);
+    if (tangent == nullptr)
+      return result;
+    *tangent    = Tangent();
+    const int n = call.counts.all;
+    for (int a = 0; a < call.counts.all; ++a)
+      for (int b = 0; b < call.counts.all; ++b)
+        {
+          const auto &i = rows_of_list[call.row[a]], &j = rows_of_list[call.row[b]];
+          (*tangent)[i[0]][i[1]][j[0]][j[1]] =
+            0.5 * (call.tangent[a + n * b] + call.tangent[b + n * a]);
+        }
+    return result;
+  }
+} // namespace PeriDeal

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/user_error.h>
+#include <perideal/scene/user_library.h>
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <csetjmp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace PeriDeal
+{
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    const std::string user_law_file = "Entry 'User law' in section 'Material': '";
+
+
+    /** The compiler of such a source, empty of other files. */
+    std::string compiler_of(const fs::path &file)
+    {
+      std::string ending = file.extension().string();
+      std::transform(ending.begin(), ending.end(), ending.begin(), [](const unsigned char c) {
+        return std::tolower(c);
+      });
+      const std::vector<std::string> fortran =
+        {".f", ".for", ".ftn", ".f90", ".f95", ".f03", ".f08"};
+      const auto chosen = [](const char *const variable, const char *const otherwise) {
+        const char *const value = std::getenv(variable);
+        return std::string(value != nullptr && *value != 0 ? value : otherwise);
+      };
+      if (std::find(fortran.begin(), fortran.end(), ending) != fortran.end())
+        return chosen("FC", "gfortran");
+      return ending == ".c" ? chosen("CC", "cc") : "";
+    }
+
+
+    /** A word of a command of the shell. */
+    std::string as_word(const std::string &text)
+    {
+      std::string word = "'";
+      for (const char c : text)
+        word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+      return word + "'";
+    }
+
+
+    /** What a compiler says, as far as one needs it: the first place and the first error. */
+    std::string first_error(const fs::path &log)
+    {
+      std::ifstream in(log);
+      std::string   first, line, error;
+      while (std::getline(in, line))
+        {
+          if (first.empty())
+            first = line;
+          if (error.empty() &&
+              (line.find("rror:") != std::string::npos || line.find("undefined") < line.size()))
+            error = line;
+        }
+      return error.empty() || error == first ? first : first + " " + error;
+    }
+
+
+    /** Compile a source into a folder. Returns what is wrong, as it goes on after its name. */
+    std::string compile_law(const fs::path    &source,
+                            const std::string &compiler,
+                            const fs::path    &folder,
+                            const fs::path    &library)
+    {
+      // What Abaqus brings for the head of a UMAT in fixed form.
+      for (const char *const name : {"ABA_PARAM.INC", "aba_param.inc"})
+        std::ofstream(folder / name) << "      implicit real*8(a-h,o-z)\n"
+                                        "      parameter (nprecd=2)\n";
+      const fs::path log     = folder / "log";
+      const int      status  = std::system(("cd " + as_word(folder.string()) + " && " + compiler +
+                                      " -shared -fPIC -O2 -I. -o " + as_word(library.string()) +
+                                      " " + as_word(fs::absolute(source).string()) + " -lm > " +
+                                      as_word(log.string()) + " 2>&1")
+                                       .c_str());
+      constexpr int  unknown = 127 << 8;
+      if (status == unknown)
+        return "is a source, and '" + compiler +
+               "' to compile it was not found. Install it (Debian: gfortran for Fortran, gcc for "
+               "C), or compile the law elsewhere and give the shared library.";
+      if (status != 0 || !fs::exists(library))
+        return "cannot be compiled by '" + compiler + " -shared -fPIC -O2': " + first_error(log);
+      return "";
+    }
+
+
+    /** A folder that is there while this lives. */
+    class TemporaryFolder
+    {
+    public:
+      TemporaryFolder()
+      {
+        std::error_code ignored;
+        std::string     name = (fs::temp_directory_path(ignored) / "perideal_law_XXXXXX").string();
+        if (mkdtemp(name.data()) != nullptr)
+          path = name;
+      }
+
+      ~TemporaryFolder()
+      {
+        std::error_code ignored;
+        if (!path.empty())
+          fs::remove_all(path, ignored);
+      }
+
+      TemporaryFolder(const TemporaryFolder &) = delete;
+
+      fs::path path; // empty: there can be none
+    };
+
+
+    /** Null with a fault, as it goes on after the file's name. */
+    std::shared_ptr<const UserLibrary> load_library(const fs::path    &library,
+                                                    const std::string &file_name,
+                                                    std::string       &fault)
+    {
+      // A name without a slash would be looked for among the libraries of the system.
+      void *const handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
+      if (handle == nullptr)
+        {
+          const char *const why = dlerror();
+          fault = std::string("cannot be loaded: ") + (why == nullptr ? "unknown reason" : why) +
+                  ". Compile it as a shared library on this machine, 'gfortran -shared -fPIC -O2 "
+                  "-o law.so law.f90', or give the source itself.";
+          return nullptr;
+        }
+      // A pointer to data may be turned into one to a function on systems that have dlopen().
+      const auto umat = reinterpret_cast<Umat>(dlsym(handle, "umat_"));
+      if (umat != nullptr)
+        return std::make_shared<const UserLibrary>(handle, umat, file_name);
+      dlclose(handle);
+      fault = "has no 'umat_', which a subroutine UMAT in Fortran makes, or 'void umat_(...)' in C "
+              "('extern \"C\"' in C++).";
+      return nullptr;
+    }
+
+
+    fs::path library_near(const std::string &file_name, const std::string &folder)
+    {
+      const fs::path beside = fs::path(folder) / file_name;
+      return !fs::exists(file_name) && fs::exists(beside) ? beside : fs::path(file_name);
+    }
+
+
+    /** What is loaded, by the file and when that was written. */
+    using Loaded = std::map<std::pair<std::string, long long>, std::weak_ptr<const UserLibrary>>;
+
+    Loaded loaded_libraries;
+
+    std::jmp_buf *way_out = nullptr;
+  } // namespace
+
+
+  std::shared_ptr<const UserLibrary> UserLibrary::of_file(const std::string &file_name,
+                                                          const std::string &folder,
+                                                          const MPI_Comm     communicator)
+  {
+    const fs::path  file = library_near(file_name, folder);
+    std::error_code ignored;
+    std::string     fault;
+    if (!fs::exists(file, ignored))
+      fault = "is not there, neither at this path nor beside the scene.";
+    else if (fs::is_directory(file, ignored))
+      fault = "is a folder, needs a shared library or its source.";
+    throw_on_all_if_any(communicator,
+                        fault.empty() ? "" : user_law_file + file_name + "' " + fault);
+
+    const auto time = fs::last_write_time(file, ignored).time_since_epoch().count();
+    auto      &kept = loaded_libraries[{fs::absolute(file).string(), static_cast<long long>(time)}];
+    const auto last = kept.lock();
+    int        rank = 0, is_known = last ? 1 : 0, all_know = 0;
+    MPI_Comm_rank(communicator, &rank);
+    MPI_Allreduce(&is_known, &all_know, 1, MPI_INT, MPI_MIN, communicator);
+    if (all_know == 1)
+      return last;
+
+    const std::string                compiler = compiler_of(file);
+    std::unique_ptr<TemporaryFolder> compiled;
+    std::string                      library = file.string();
+    if (!compiler.empty())
+      {
+        if (rank == 0)
+          {
+            compiled = std::make_unique<TemporaryFolder>();
+            library  = (compiled->path / "law.so").string();
+            fault =
+              compiled->path.empty() ?
+                "is a source, and there can be no temporary folder to compile it in (TMPDIR)." :
+                compile_law(file, compiler, compiled->path, library);
+          }
+        throw_on_all_if_any(communicator,
+                            fault.empty() ? "" : user_law_file + file_name + "' " + fault);
+        std::vector<char> name(library.begin(), library.end());
+        auto              size = static_cast<unsigned long>(name.size());
+        MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, 0, communicator);
+        name.resize(size);
+        MPI_Bcast(name.data(), static_cast<int>(size), MPI_CHAR, 0, communicator);
+        library.assign(name.begin(), name.end());
+      }
+    const auto now = load_library(library, file_name, fault);
+    // All have it before process 0 removes the folder.
+    throw_on_all_if_any(communicator,
+                        fault.empty() ? "" : user_law_file + file_name + "' " + fault);
+    kept = now;
+    return now;
+  }
+
+
+  UserLibrary::~UserLibrary()
+  {
+    dlclose(handle);
+  }
+
+
+  bool comes_back(void (*const call)(void *), void *const data)
+  {
+    std::jmp_buf        here;
+    std::jmp_buf *const before = way_out;
+    way_out                    = &here;
+    // Not by an exception: Fortran need not be compiled so that these find their way through it.
+    if (setjmp(here) != 0)
+      {
+        way_out = before;
+        return false;
+      }
+    call(data);
+    way_out = before;
+    return true;
+  }
+
+
+  void leave_user_library()
+  {
+    if (way_out == nullptr)
+      std::exit(1);
+    std::longjmp(*way_out, 1);
+  }
+} // namespace PeriDeal
