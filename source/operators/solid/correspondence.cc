@@ -244,30 +244,28 @@ namespace PeriDeal
   template <int dim>
   void Correspondence<dim>::renew(const std::vector<unsigned int> &nodes)
   {
-    // Once bonds have broken what is left may hold a node in some directions, or in none: these
-    // alone strain it.
-    constexpr double few = 1e-9;
+    // Of bonds that have broken too few may be left for a gradient, and those that are would make
+    // the node so stiff that steps are no longer stable. At a face of a crack half of M is left.
+    constexpr double few = 0.35;
     trial.known          = false;
     for (const unsigned int i : nodes)
       {
         Full M;
+        bool lost = false;
         bonds.for_each(i, [&](const auto &bond) {
           const Tensor<1, dim> xi        = ends.vector(i, bond.neighbor);
           const bool           is_beyond = &bonds.rows_of(bond.number) == &bonds.beyond;
           (is_beyond ? weights.beyond : weights.body)[bonds.place(bond.number)] =
             (bond.moment * xi) / xi.norm_square();
           M += symmetrize(outer_product(bond.moment, xi));
+          lost = lost || !bonds.is_whole(bond.number);
         });
         Shape       &shape = shapes[i];
-        const double size  = trace(M);
-        shape.inverse      = Full();
-        if (smallest_eigenvalue(M) > few * size)
-          shape.inverse = invert(M);
-        else if (size > 0.)
-          for (const auto &[value, direction] : eigenvectors(M))
-            if (value > few * size)
-              shape.inverse += symmetrize(outer_product(direction, direction)) / value;
-        shape.stabilizer = dim * (dim + 2.) * shape.shear / laws.weighted.local_element(i);
+        const double q     = laws.weighted.local_element(i);
+        const bool   holds = !lost ||
+                           dim * smallest_eigenvalue(M) > few * q * families.nodes().volume(i);
+        shape.inverse    = holds ? invert(M) : Full();
+        shape.stabilizer = holds ? dim * (dim + 2.) * shape.shear / q : 0.;
       }
   }
 

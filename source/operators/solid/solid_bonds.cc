@@ -277,7 +277,6 @@ namespace PeriDeal
     renew_weights(near);
     for (const unsigned int i : neighbors.nodes_near(change.cuts, touched + reach))
       renew_springs(i);
-    renew_gradients(near);
   }
 
 

@@ -606,6 +606,8 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *of_nodes)
   {
+    if (!of_nodes)
+      solid.renew_gradients(solid.rows.body.nodes);
     if (of_nodes && !solid.ends.images && !solid.correspondence())
       mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
     else if (!of_nodes || !this->forgoes_diagonal)
