@@ -294,11 +294,16 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Correspondence<dim>::squares_beside(const double      *u,
-                                             const unsigned int i,
-                                             const Span        &inside,
-                                             const Span        &outside) const
+  void Correspondence<dim>::find_at(const double      *u,
+                                    const unsigned int i,
+                                    const Span        &inside,
+                                    const Span        &outside) const
   {
+    const bool            flows = law.j2 != nullptr;
+    const Shape          &shape = shapes[i];
+    const Tensor<2, dim>  inverse(shape.inverse);
+    const Tensor<2, dim> &slopes = trial.slopes[i] =
+      sum_of_changes(bonds, ends, u, i, inside, outside) * inverse;
     double squares = 0.;
     for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
       const bool   is_beyond = &rows == &bonds.beyond;
@@ -306,47 +311,39 @@ namespace PeriDeal
       if (w == 0.)
         return;
       const Tensor<1, dim> change = ends.change(u, i, rows.neighbors[k]);
-      Tensor<1, dim>       beside = change - trial.slopes[i] * rows.moments[k] / w;
-      if (law.j2 != nullptr)
+      Tensor<1, dim>       beside = change - slopes * rows.moments[k] / w;
+      if (flows)
         {
           (is_beyond ? trial.changes.beyond : trial.changes.body)[k] = change;
           beside -= vector_at<dim>(&rows.nonlinear.history[n_history * k]);
         }
       squares += w * beside.norm_square();
     });
-    return squares;
+    typename J2Plasticity::Beside flow;
+    const double                  volume = families.nodes().volume(i);
+    ask(i, 3. * shape.shear * shape.stabilizer / volume * squares, nullptr, flow);
+    trial.squares[i]             = squares;
+    trial.ratios[i]              = flow.ratio;
+    double *const        numbers = trial.numbers.begin() + (flows ? n_of_flow : n_numbers) * i;
+    const double         c       = shape.stabilizer * flow.ratio;
+    const Tensor<2, dim> stress(in_body<dim>(trial.responses[i].stress));
+    write(numbers + at_force, Tensor<2, dim>(volume * (stress * inverse) - c * slopes));
+    numbers[at_stiffness] = c;
+    if (!flows)
+      return;
+    write(numbers + at_slopes, slopes);
+    numbers[at_lost] = 1. - flow.ratio;
   }
 
 
   template <int dim>
   void Correspondence<dim>::find(const Vector &u) const
   {
-    const Nodes<dim> &nodes = families.nodes();
-    const unsigned    n     = law.j2 != nullptr ? n_of_flow : n_numbers;
     u.update_ghost_values();
     const double *const values = u.begin();
     ends.find(values);
     for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
-      const Shape          &shape  = shapes[i];
-      const Tensor<2, dim> &slopes = trial.slopes[i] =
-        sum_of_changes(bonds, ends, values, i, inside, outside) * Tensor<2, dim>(shape.inverse);
-      const double                  squares = squares_beside(values, i, inside, outside);
-      typename J2Plasticity::Beside flow;
-      const double                  volume = nodes.volume(i);
-      ask(i, 3. * shape.shear * shape.stabilizer / volume * squares, nullptr, flow);
-      trial.squares[i]      = squares;
-      trial.ratios[i]       = flow.ratio;
-      double *const numbers = trial.numbers.begin() + n * i;
-      const double  c       = shape.stabilizer * flow.ratio;
-      write(numbers + at_force,
-            Tensor<2, dim>(volume * Tensor<2, dim>(in_body<dim>(trial.responses[i].stress)) *
-                             Tensor<2, dim>(shape.inverse) -
-                           c * slopes));
-      numbers[at_stiffness] = c;
-      if (law.j2 == nullptr)
-        return;
-      write(numbers + at_slopes, slopes);
-      numbers[at_lost] = 1. - flow.ratio;
+      find_at(values, i, inside, outside);
     });
     u.set_ghost_state(false);
     trial.numbers.update_ghost_values();
@@ -413,7 +410,15 @@ namespace PeriDeal
   double Correspondence<dim>::energy_of(const std::vector<unsigned int> &list,
                                         const Vector                    &u) const
   {
-    if (!knows(u))
+    if (law.is_linear)
+      {
+        u.update_ghost_values();
+        ends.find(u.begin());
+        for (const unsigned int i : list)
+          find_at(u.begin(), i, span_of(bonds.body, i), span_of(bonds.beyond, i));
+        u.set_ghost_state(false);
+      }
+    else if (!knows(u))
       find(u);
     double sum = 0.;
     for (const unsigned int i : list)

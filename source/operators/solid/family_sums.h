@@ -5,6 +5,7 @@
 
 #include <perideal/operators/solid/bond_table.h>
 
+#include <algorithm>
 #include <type_traits>
 
 namespace PeriDeal
@@ -14,6 +15,18 @@ namespace PeriDeal
   {
     std::size_t begin = 0, end = 0;
   };
+
+
+  /** Those of an owned node, or none. */
+  template <int dim>
+  Span span_of(const BondRows<dim> &rows, const unsigned int node)
+  {
+    const auto place = std::lower_bound(rows.nodes.begin(), rows.nodes.end(), node);
+    if (place == rows.nodes.end() || *place != node)
+      return {};
+    const std::size_t row = place - rows.nodes.begin();
+    return {rows.starts[row], rows.starts[row + 1]};
+  }
 
 
   /** visit(i, in the body, beyond) of all owned nodes, which all store their bonds. */

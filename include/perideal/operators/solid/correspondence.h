@@ -158,11 +158,11 @@ namespace PeriDeal
     bool knows(const Vector &u) const;
     void remember();
 
-    /** The sum of W |z_e|^2 of an owned node, whose gradient is known. */
-    double squares_beside(const double      *u,
-                          const unsigned int i,
-                          const Span        &inside,
-                          const Span        &outside) const;
+    /** What an owned node makes of displacements, whose ghosts and images are up to date. */
+    void find_at(const double      *u,
+                 const unsigned int i,
+                 const Span        &inside,
+                 const Span        &outside) const;
 
     /** What the law says at an owned node. */
     void ask(const unsigned int               i,
