@@ -113,7 +113,10 @@ namespace PeriDeal
   }
 
 
-  StressLaw::Response J2Plasticity::update(const Trial &trial, double *next, Tangent *tangent) const
+  StressLaw::Response J2Plasticity::update_with(Beside      &beside,
+                                                const Trial &trial,
+                                                double      *next,
+                                                Tangent     *tangent) const
   {
     const Numbers of{trial.parameters[0],
                      trial.parameters[1],
@@ -124,19 +127,21 @@ namespace PeriDeal
     for (unsigned int k = 0; k < kappa_at; ++k)
       elastic.access_raw_entry(k) -= trial.state[k];
     return kind == StressState::plane_stress ?
-             in_plane_stress(in_plane(elastic), of, next, tangent) :
-             in_space(elastic, of, next, tangent);
+             in_plane_stress(in_plane(elastic), of, beside, next, tangent) :
+             in_space(elastic, of, beside, next, tangent);
   }
 
 
   StressLaw::Response J2Plasticity::in_space(const Tensor  &elastic,
                                              const Numbers &of,
+                                             Beside        &beside,
                                              double        *next,
                                              Tangent       *tangent) const
   {
     const double G = of.shear, H = of.hardening, theta = trace(elastic);
-    const Tensor trial = 2. * G * deviator(elastic);
-    const double size  = std::sqrt(1.5) * trial.norm(),
+    const Tensor trial  = 2. * G * deviator(elastic);
+    const double square = beside.square, own = std::sqrt(1.5) * trial.norm();
+    const double size  = square > 0. ? std::sqrt(own * own + square) : own,
                  over  = size - of.yield_stress - H * next[kappa_at];
     const bool   flows = over > 0.;
     const double grown = flows ? over / (3. * G + H) : 0.,
@@ -153,20 +158,25 @@ namespace PeriDeal
     result.stored      = 0.5 * of.dilatation * theta * theta + shear * shear / (6. * G) +
                     0.5 * H * next[kappa_at] * next[kappa_at];
     result.dissipated = of.yield_stress * grown;
+    // By how much less the factor falls than it would with a yield stress of 0.
+    const double keeps  = flows ? 3. * G / (3. * G + H) - (1. - left) : 0.;
+    beside.ratio        = left;
+    beside.ratio_slope  = flows ? -0.5 * keeps / (size * size) : 0.;
+    beside.stress_slope = beside.ratio_slope * trial;
     if (tangent == nullptr)
       return result;
     *tangent =
       of.dilatation * outer_product(unit_symmetric_tensor<3>(), unit_symmetric_tensor<3>()) +
       2. * G * left * deviator_tensor<3>();
     if (flows)
-      *tangent -= 3. * G / (size * size) * (3. * G / (3. * G + H) - (1. - left)) *
-                  outer_product(trial, trial);
+      *tangent -= 3. * G / (size * size) * keeps * outer_product(trial, trial);
     return result;
   }
 
 
   StressLaw::Response J2Plasticity::in_plane_stress(const Tensor  &elastic,
                                                     const Numbers &of,
+                                                    Beside        &beside,
                                                     double        *next,
                                                     Tangent       *tangent) const
   {
@@ -180,7 +190,7 @@ namespace PeriDeal
                    H,
                    of.yield_stress + H * next[kappa_at],
                    p_trial * p_trial,
-                   1.5 * (s_trial * s_trial)};
+                   1.5 * (s_trial * s_trial) + beside.square};
     const bool   flows = flow.equivalent(0.) > flow.yield_stress;
     const double M     = flows ? flow.solve() : 0.;
     const double p     = flow.of_p(M) * p_trial;
@@ -196,19 +206,23 @@ namespace PeriDeal
           next[k] += plastic.access_raw_entry(k);
         next[kappa_at] += grown;
       }
-    result.stored =
-      0.5 * p * p / K + 0.25 * (s * s) / G + 0.5 * H * next[kappa_at] * next[kappa_at];
+    const double r = flow.of_s(M);
+    result.stored  = 0.5 * p * p / K + 0.25 * (s * s) / G + r * r * beside.square / (6. * G) +
+                    0.5 * H * next[kappa_at] * next[kappa_at];
     result.dissipated = of.yield_stress * grown;
+    // M grows by this per half of a change of the square of s_eq.
+    const double keeps  = 1. - H * M,
+                 grows  = flows ? keeps / (H * size * size + keeps * flow.fall(M)) : 0.;
+    const Tensor along  = K * flow.of_p(M) * p * unit + 3. * G * r * s;
+    beside.ratio        = r;
+    beside.ratio_slope  = -1.5 * G * std::pow(r, 4) * grows;
+    beside.stress_slope = -0.5 * r * r * grows * along;
     if (tangent == nullptr)
       return result;
     *tangent = 2. * G * flow.of_s(M) * (identity_in_plane() - 0.5 * outer_product(unit, unit)) +
                K * flow.of_p(M) * outer_product(unit, unit);
     if (flows)
-      {
-        const Tensor along = K * flow.of_p(M) * p * unit + 3. * G * flow.of_s(M) * s;
-        const double keeps = 1. - H * M;
-        *tangent -= keeps / (H * size * size + keeps * flow.fall(M)) * outer_product(along, along);
-      }
+      *tangent -= grows * outer_product(along, along);
     return result;
   }
 } // namespace PeriDeal

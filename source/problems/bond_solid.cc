@@ -245,7 +245,7 @@ namespace PeriDeal
         Timings::Scope scope(this->timings, "operator");
         states                       = std::make_unique<StateOperator<dim>>(*node_set, scene);
         const SolidBonds<dim> &bonds = states->bonds();
-        if (families_end(scene))
+        if (families_end(scene) && !scene.elasticity.is_correspondence())
           stiffer = surface_stiffness(bonds);
         if (bonds.corrections.thinnest < std::numeric_limits<double>::infinity())
           {
@@ -349,9 +349,12 @@ namespace PeriDeal
                 return states->breaking().critical_stretches()[i];
               });
           }
-        if (const auto &yielding = states->bonds().yielding)
+        if (const auto *const yielding = states->bonds().yielding())
           list.add("plastic_strain",
                    [&](const unsigned int i) { return yielding->plastic_strain(i); });
+        if (const auto *const nodal = states->bonds().correspondence())
+          for (const auto &[name, values] : nodal->shown())
+            list.add(name, [&of = values](const unsigned int i) { return of[i]; });
         list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
         return list.take();
       }
@@ -466,19 +469,26 @@ namespace PeriDeal
             entry +
             "has not found all factors: moments of families differ from those of a complete one by up to " +
             number_text(states->bonds().corrections.gap) + " of them.");
-        const auto  &family   = states->bonds().families.weights().members();
-        const double thinnest = states->bonds().corrections.thinnest;
-        for (const std::string &note :
-             {note_on_few_bonds(scene, family),
-              note_on_bending(scene),
-              spacing > 0. ? note_on_thin_parts(thinnest / spacing,
-                                                scene.horizon() / spacing,
-                                                completes_at_surfaces<dim>(scene)) :
-                             "",
-              states->brittle() && !scene.material.law.softens() ? note_on_trapping(scene, family) :
-                                                                   "",
-              note_on_softening(),
-              note_on_critical_stretch()})
+        const auto  &family            = states->bonds().families.weights().members();
+        const double thinnest          = states->bonds().corrections.thinnest;
+        const bool   is_correspondence = scene.elasticity.is_correspondence(); // has its moduli
+        for (
+          const std::string &note :
+          {is_correspondence ? "" : note_on_few_bonds(scene, family),
+           is_correspondence ? "" : note_on_bending(scene),
+           spacing > 0. && !is_correspondence ?
+             note_on_thin_parts(thinnest / spacing,
+                                scene.horizon() / spacing,
+                                completes_at_surfaces<dim>(scene)) :
+             "",
+           std::string(
+             states->brittle() && is_correspondence ?
+               "bonds break at the stretches of 'Model = state-based', but a node of 'correspondence' has all of its stress until it has lost two thirds of its bonds: new cracks have cost 1.2 to 1.8 times what they cost there." :
+               ""),
+           states->brittle() && !scene.material.law.softens() ? note_on_trapping(scene, family) :
+                                                                "",
+           note_on_softening(),
+           note_on_critical_stretch()})
           if (!note.empty())
             list.push_back(note);
         if (dim == 2 && scene.material.law.kind == SolidLaw::formula &&
@@ -541,6 +551,11 @@ namespace PeriDeal
       {
         std::vector<SymmetricTensor<2, 3>> stress;
         const Vector                      &change = states->temperature_change();
+        // Of isotropic bodies that may be warm full_stress() knows.
+        const bool knows_out_of_plane = states->bonds().correspondence() &&
+                                        scene.elasticity.plane == PlaneState::strain &&
+                                        (scene.material.law.kind != SolidLaw::linear ||
+                                         !scene.material.law.orthotropy.young.empty());
         for (unsigned int i = 0; i < node_set->n_owned(); ++i)
           {
             const Point<dim> &p = node_set->position(i);
@@ -551,8 +566,10 @@ namespace PeriDeal
                                            change.local_element(i) :
                                            scene.elasticity.temperature_change.value(p)));
             if (dim == 2 && scene.elasticity.plane == PlaneState::strain &&
-                states->bonds().yielding)
-              stress.back()[2][2] = states->bonds().yielding->out_of_plane(i);
+                states->bonds().yielding())
+              stress.back()[2][2] = states->bonds().yielding()->out_of_plane(i);
+            if (dim == 2 && knows_out_of_plane)
+              stress.back()[2][2] = states->bonds().correspondence()->out_of_plane(i);
             if constexpr (dim == 2)
               if (scene.material.law.kind == SolidLaw::viscoelastic)
                 {

@@ -18,7 +18,7 @@ namespace PeriDeal
       "Shape k(r) of the micro-conductivity within the horizon delta: 1, 1 - r/delta, or "
       "exp(-(2 r/delta)^2).";
     declare("Kernel exponent", EntryType::text, "auto", "1") =
-      "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best.";
+      "n of the pair law k(r)/r^n: 0, 1 or 2. `auto` is 2, and 0 with `Physics = elasticity`, where bonds of equal weight keep the moduli best, but 1 with `Model = correspondence`.";
     declare(sampling.volume_fraction, "Volume fraction", "linear", {"none", "linear", "exact"}) =
       "Share of a neighbour's volume that counts: all of it for r <= delta (none); a linear ramp one spacing wide about r = delta; or the exact part of its lattice cell within the horizon.";
     declare("Calibration",

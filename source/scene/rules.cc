@@ -577,6 +577,8 @@ namespace PeriDeal
         return "motion with cracks, or with a horizon that is a length";
       if (scene.material.law.kind != SolidLaw::linear)
         return "another 'Law' than 'linear' (section 'Material')";
+      if (scene.elasticity.is_correspondence())
+        return "'Model = correspondence' (section 'Elasticity')";
       if (!scene.material.law.orthotropy.young.empty())
         return "orthotropic bodies ('Young moduli' in section 'Material')";
       if (!scene.time.steady && scene.deforms && !moves &&
@@ -721,8 +723,12 @@ namespace PeriDeal
         body.material.refuse(is_so, "Young moduli", why);
       };
       refuse(
-        !by_elements || coupled,
-        "makes the body orthotropic, which is for 'Models = finite elements': bonds have two moduli. Use that, or give 'Young modulus' and 'Poisson ratio'.");
+        (!by_elements && !body.elasticity.is_correspondence()) || coupled,
+        "makes the body orthotropic, which is for 'Models = finite elements': bonds have two moduli. Use that, or 'Model = correspondence' (section 'Elasticity') with 'Models = peridynamics', or give "
+        "'Young modulus' and 'Poisson ratio'.");
+      refuse(
+        !by_elements && body.material.breaks(),
+        "makes the body orthotropic, whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
       refuse(
         body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
         "makes the body orthotropic, which knows no 'Temperature change' (section 'Elasticity'). Leave one of them out.");
@@ -733,11 +739,49 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    template <int dim>
+    void refuse_correspondence(const BodyParameters<dim> &body,
+                               const bool                 by_elements,
+                               const bool                 coupled)
+    {
+      if (!body.elasticity.is_correspondence() || (by_elements && !coupled))
+        return;
+      const auto refuse = [&](const bool is_so, const std::string &why) {
+        body.elasticity.refuse(is_so, "Model", "found 'correspondence', " + why);
+      };
+      const SolidLaw kind = body.material.law.kind;
+      refuse(coupled,
+             "which is for 'Models = peridynamics', not for 'coupled'. Use 'state-based'.");
+      refuse(dim == 1, "which is for 'Dimension' 2 and 3. Use 'state-based'.");
+      refuse(body.elasticity.has_full_kinematics(),
+             "which is for small displacements. Use 'Kinematics = linear', or 'state-based'.");
+      refuse(kind == SolidLaw::viscoelastic || kind == SolidLaw::softening ||
+               kind == SolidLaw::formula,
+             "whose nodes have a law of stresses; 'Law = " + body.material.text("Law") +
+               "' (section 'Material') is one of bonds. Use 'state-based'.");
+      refuse(
+        !body.material.law.interfaces.empty(),
+        "whose bonds know no 'Interfaces' (section 'Material'). Leave these out, or use 'state-based'.");
+      refuse(
+        body.elasticity.text("Crack direction") == "mean tension",
+        "whose bonds do not tell the tension that 'Crack direction = mean tension' goes by. Use 'bonds' there, or 'state-based'.");
+      body.peridynamics.refuse(
+        body.peridynamics.corrects_elastic_bonds(),
+        "Surface correction",
+        "found '" + body.peridynamics.text("Surface correction") +
+          "', whose factors are those of the bonds of 'Model = state-based'; nodes of 'correspondence' have their strain at surfaces, too. Use 'auto', 'fictitious nodes' or 'none'.");
+    }
+  } // namespace
+
+
   template <int dim>
   void refuse_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled)
   {
     const Material &material = body.material;
     const SolidLaw  kind     = material.law.kind;
+    refuse_correspondence(body, by_elements, coupled);
     refuse_orthotropic_body(body, by_elements, coupled);
     if (kind == SolidLaw::linear)
       return;
@@ -795,7 +839,8 @@ namespace PeriDeal
     constexpr double    fewest = 2., most_oblong = 1.5, slack = 1e-6; // test Laws.IsotropicFamilies
     const Peridynamics &pd = body.peridynamics;
     if (dim == 1 || !body.deforms || pd.text("Calibration") != "auto" ||
-        !body.domain.has_lattice() || body.material.breaks())
+        !body.domain.has_lattice() || body.material.breaks() ||
+        body.elasticity.is_correspondence()) // which has the moduli whatever the weights
       return pd.sampling.calibration;
     const dealii::Tensor<1, dim> h       = body.domain.spacing();
     const double                 longest = *std::max_element(h.begin_raw(), h.end_raw()),

@@ -210,6 +210,9 @@ namespace PeriDeal
     cracks.parse(general.physics);
     add_interfaces(*this, groups);
     peridynamics.parse(general.physics);
+    if (this->deforms && elasticity.is_correspondence() &&
+        peridynamics.text("Kernel exponent") == "auto")
+      peridynamics.kernel_exponent = 1; // near neighbours tell more of a gradient
     coupling.parse(this->deforms && material.breaks());
     lay_cracks_on_faces(*this);
     keep_cracks_off_nodes(*this);

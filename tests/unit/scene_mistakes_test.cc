@@ -273,6 +273,20 @@ Elasticity/Kinematics=full => 'Law' | 'user' | 'Kinematics = linear'
   }
 
 
+  TEST(SceneMistakes, of_correspondence)
+  {
+    expect_said(elastic_and({"Models=peridynamics", "Elasticity/Model=correspondence"}), R"(
+Models=coupled & Coupling/Zone=everywhere => 'Model' | 'correspondence' | 'coupled' | 'state-based'
+Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | small displacements | 'Kinematics = linear'
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 => 'Model' | 'Law = viscoelastic' | 'state-based'
+Material/Law=formula & Material/Bond force=s & Elasticity/Solver=newton => 'Model' | 'Law = formula' | 'state-based'
+Peridynamics/Surface correction=moments => 'Surface correction' | 'moments' | 'correspondence' | 'none'
+Peridynamics/Operator form=lattice => 'Operator form' | 'Model = correspondence' | 'auto'
+Material/Law=plastic & Material/Yield stress=1 & Elasticity/Solver=newton & Material/Fracture energy=1 => 'Law' | do not break
+)");
+  }
+
+
   TEST(SceneMistakes, of_orthotropic_bodies)
   {
     expect_said(elastic_and({"Models=finite elements",
@@ -298,6 +312,7 @@ Material/Material angle=1, 2 => 'Material angle' | one angle
 Elasticity/Plane=strain => 'Young moduli' | '3, 1' | E1, E2, E3
 Material/Phases/Young moduli=core: 1, 2 => 'Young moduli' | no phase 'core'
 Material/Law=plastic & Material/Yield stress=1 & Elasticity/Solver=newton => 'Young moduli' | 'Law = linear' | 'plastic'
+Models=peridynamics & Elasticity/Model=correspondence & Material/Fracture energy=1 => 'Young moduli' | do not break
 Models=peridynamics => 'Young moduli' | 'Models = finite elements'
 Models=coupled & Coupling/Zone=everywhere => 'Young moduli' | 'Models = finite elements'
 Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Young moduli' | 'Temperature change'

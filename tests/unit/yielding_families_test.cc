@@ -67,7 +67,7 @@ namespace
   template <int dim>
   const YieldingFamilies<dim> &yielding(const Body<dim> &body)
   {
-    return *body.states->bonds().yielding;
+    return *body.states->bonds().yielding();
   }
 
 

@@ -26,6 +26,9 @@ namespace PeriDeal
    *
    * and M is the one root of s_eq(M) (1 - H M) = sy + H kappa (Simo and Taylor 1986).
    *
+   * Shear that no strain at the point tells of may flow with it (Beside): its square B counts in
+   * s_eq^2, and the factor r of the deviator, in plane stress 1/(1 + 3 G M), is that of it, too.
+   *
    * State: the plastic strain (raw entries of the tensor), kappa. Parameters: parameters().
    */
   class J2Plasticity : public StressLaw
@@ -50,7 +53,23 @@ namespace PeriDeal
                                    const double  yield_stress,
                                    const double  hardening) const;
 
-    Response update(const Trial &trial, double *next, Tangent *tangent) const override;
+    /** Shear beside that of the strain, and what becomes of it. */
+    struct Beside
+    {
+      double square      = 0.; // B, as the step would have it without flow
+      double ratio       = 1.; // r: what flow leaves of its root
+      double ratio_slope = 0.; // dr/dB
+      Tensor stress_slope;     // d sigma/dB, which is dr/d eps over 6 G
+    };
+
+    Response update(const Trial &trial, double *next, Tangent *tangent) const override
+    {
+      Beside none;
+      return update_with(none, trial, next, tangent);
+    }
+
+    /** As update(); what is stored beside, r^2 B/(6 G), is in what is stored. */
+    Response update_with(Beside &beside, const Trial &trial, double *next, Tangent *tangent) const;
 
     std::vector<std::pair<std::string, unsigned int>> shown() const override
     {
@@ -68,10 +87,12 @@ namespace PeriDeal
 
     Response in_space(const Tensor  &elastic_trial,
                       const Numbers &of,
+                      Beside        &beside,
                       double        *next,
                       Tangent       *tangent) const;
     Response in_plane_stress(const Tensor  &elastic_trial,
                              const Numbers &of,
+                             Beside        &beside,
                              double        *next,
                              Tangent       *tangent) const;
 

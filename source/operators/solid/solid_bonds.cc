@@ -62,6 +62,7 @@ namespace PeriDeal
     rows.go_on_beyond(search().on_lattice(sides, completes),
                       !body.elasticity.has_full_kinematics() && !law.any() &&
                         !body.material.law.softens() && !body.material.law.yields() &&
+                        !body.elasticity.is_correspondence() &&
                         !families.cracks().history().changes_ever());
     // The lattice knows what is complete to the last bit.
     const double complete = rows.complete_weighted;
@@ -115,14 +116,18 @@ namespace PeriDeal
     laws.weighted.update_ghost_values();
     if (body.peridynamics.corrects_elastic_bonds())
       correct_surface(body);
-    const Material::Law &of_scene = body.material.law;
+    const Material::Law &of_scene  = body.material.law;
+    const unsigned int   n_history = !of_scene.yields() ? law.n_history() :
+                                     body.elasticity.is_correspondence() ?
+                                                          Correspondence<dim>::n_history :
+                                                          YieldingFamilies<dim>::n_history;
     rows.find_springs(body.elasticity.has_full_kinematics(),
-                      of_scene.softens() ? BondSoftness::n :
-                      of_scene.yields()  ? YieldingFamilies<dim>::n_history :
-                                           law.n_history());
+                      of_scene.softens() ? BondSoftness::n : n_history);
     sums.take_lattice();
-    if (of_scene.yields())
-      yielding = std::make_unique<YieldingFamilies<dim>>(families, ends, rows, laws, body);
+    if (body.elasticity.is_correspondence())
+      by_family = std::make_unique<Correspondence<dim>>(families, ends, rows, laws, thermal, body);
+    else if (of_scene.yields())
+      by_family = std::make_unique<YieldingFamilies<dim>>(families, ends, rows, laws, body);
   }
 
 

@@ -293,7 +293,14 @@ namespace PeriDeal
   template <int dim>
   void find_stiffness_diagonal(const SolidBonds<dim> &bonds, Vector &diagonal)
   {
-    const Nodes<dim>   &nodes = bonds.families.nodes();
+    const Nodes<dim> &nodes = bonds.families.nodes();
+    if (const auto *const nodal = bonds.correspondence())
+      {
+        nodal->find_diagonal(diagonal);
+        for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+          hold_diagonal(bonds, i, diagonal);
+        return;
+      }
     std::vector<double> factors(nodes.n_local(), 0.);
     for (unsigned int i = 0; i < nodes.n_local() && bonds.laws.volumetric; ++i)
       factors[i] = bonds.laws.tension(i, 1.);
@@ -373,6 +380,8 @@ namespace PeriDeal
                        const Vector          &of_dilatations,
                        const bool             of_tangent)
   {
+    if (const auto *const nodal = bonds.correspondence())
+      return nodal->row_sums();
     Vector     rows(bonds.families.nodes().partitioner());
     const bool across = bonds.kinematics.is_full();
     for (const unsigned int i : bonds.rows.beyond.nodes)

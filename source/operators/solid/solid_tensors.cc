@@ -14,6 +14,13 @@ namespace PeriDeal
   std::vector<double> nodal_dilatations(const SolidBonds<dim> &bonds, const Vector &u)
   {
     std::vector<double> theta(bonds.families.nodes().n_owned(), 0.);
+    if (const auto *const nodal = bonds.correspondence())
+      {
+        const auto strain = nodal->tensors(u).strain;
+        for (unsigned int i = 0; i < theta.size(); ++i)
+          theta[i] = bonds.laws[i].dilatation * (trace(strain[i]) / dim - bonds.thermal[i]);
+        return theta;
+      }
     u.update_ghost_values();
     bonds.ends.find(u.begin());
     for (unsigned int i = 0; i < theta.size(); ++i)
@@ -32,6 +39,9 @@ namespace PeriDeal
   template <int dim>
   NodalTensors<dim> nodal_tensors(const SolidBonds<dim> &bonds, const Vector &u, const Vector &tau)
   {
+    if (const auto *const nodal = bonds.correspondence())
+      return nodal->tensors(u);
+    const auto *const          yielding       = bonds.yielding();
     const Nodes<dim>          &nodes          = bonds.families.nodes();
     const NodeLaws<dim>       &laws           = bonds.laws;
     const BondEnds<dim>       &ends           = bonds.ends;
@@ -55,10 +65,9 @@ namespace PeriDeal
                                                (bond.moment * xi) / x2; // W
           gradient += weight * outer_product(eta, xi);
           shape += weight * outer_product(xi, xi);
-          if (bonds.yielding)
+          if (yielding != nullptr)
             {
-              stress +=
-                weight * bonds.yielding->force(i, bond, several_phases) * outer_product(xi, xi);
+              stress += weight * yielding->force(i, bond, several_phases) * outer_product(xi, xi);
               return;
             }
           const double product = bond.spring * bonds.forces.effective_moment(u.begin(), i, bond);

@@ -107,8 +107,13 @@ namespace PeriDeal
     if (solid.thermal.any() && !solid.forces.is_bond_by_bond()) // else it is in the extensions
       {
         scratch = 0.;
-        find_tensions(scratch, true);
-        solid.forces.find_forces(thermal_loads, scratch.begin(), tau);
+        if (solid.by_family)
+          solid.by_family->find_forces(thermal_loads, scratch);
+        else
+          {
+            find_tensions(scratch, true);
+            solid.forces.find_forces(thermal_loads, scratch.begin(), tau);
+          }
         thermal_loads *= -1.;
         if (solid.ends.images)
           solid.ends.images->keep_forces();
@@ -143,9 +148,9 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::multiply(Vector &y, const Vector &x) const
   {
-    if (solid.yielding && solid.yielding->has_tangent())
+    if (solid.by_family && solid.by_family->has_tangent())
       {
-        solid.yielding->multiply(y, x);
+        solid.by_family->multiply(y, x);
         return;
       }
     x.update_ghost_values();
@@ -159,9 +164,14 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::damping_force(Vector &y, const Vector &v) const
   {
-    v.update_ghost_values();
-    sum_forces(y, v, false);
-    v.set_ghost_state(false);
+    if (const auto *const nodal = solid.correspondence())
+      nodal->multiply(y, v);
+    else
+      {
+        v.update_ghost_values();
+        sum_forces(y, v, false);
+        v.set_ghost_state(false);
+      }
     conditions->mask(y);
   }
 
@@ -169,9 +179,9 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_forces(Vector &y, const Vector &u, const double t) const
   {
-    if (solid.yielding)
+    if (solid.flows())
       {
-        solid.yielding->find_forces(y, u);
+        solid.by_family->find_forces(y, u);
         return;
       }
     if (!solid.forces.is_bond_by_bond())
@@ -194,9 +204,9 @@ namespace PeriDeal
   {
     if (!nonlinear())
       return;
-    if (solid.yielding)
+    if (solid.flows())
       {
-        solid.yielding->linearize(u);
+        solid.by_family->linearize(u);
         contact->linearize(u);
         return;
       }
@@ -211,7 +221,7 @@ namespace PeriDeal
   template <int dim>
   double StateOperator<dim>::largest_stretch(const Vector &u) const
   {
-    if (!nonlinear() || solid.yielding) // which makes no body stiffer
+    if (!nonlinear() || solid.flows()) // which makes no body stiffer
       return 0.;
     u.update_ghost_values();
     const double largest = solid.forces.largest_stretch(u.begin());
@@ -260,8 +270,8 @@ namespace PeriDeal
   double StateOperator<dim>::energy(const Vector &u) const
   {
     const Nodes<dim> &nodes = solid.families.nodes();
-    if (solid.yielding)
-      return solid.yielding->energy(u) + contact->energy(u);
+    if (solid.by_family)
+      return solid.by_family->energy(u) + contact->energy(u);
     if (solid.law.any())
       return solid.forces.energy_of(solid.rows.body.nodes, u) + contact->energy(u);
     u.update_ghost_values();
@@ -285,11 +295,13 @@ namespace PeriDeal
   template <int dim>
   NodalTensors<dim> StateOperator<dim>::tensors(const Vector &u) const
   {
-    if (solid.yielding)
+    if (const auto *const yielding = solid.yielding())
       {
-        solid.yielding->find(u);
+        yielding->find(u);
         return nodal_tensors(solid, u, tau);
       }
+    if (solid.by_family)
+      return nodal_tensors(solid, u, tau);
     u.update_ghost_values();
     find_tensions(u, solid.kinematics.is_strained() || solid.law.any());
     return nodal_tensors(solid, u, tau);
@@ -323,10 +335,12 @@ namespace PeriDeal
   template <int dim>
   Spectrum StateOperator<dim>::spectrum() const
   {
-    if (solid.yielding) // steps have to be stable where it does not, any more
-      solid.yielding->forget_tangent();
+    if (solid.flows()) // steps have to be stable where it does not, any more
+      solid.by_family->forget_tangent();
     const Vector of_dilatations = find_sums_of_dilatations(solid);
-    const double bound = largest_row(of_dilatations, true, std::sqrt(static_cast<double>(dim)));
+    // Rows of correspondence are those of numbers, not of blocks.
+    const double of_blocks = solid.correspondence() ? 1. : std::sqrt(static_cast<double>(dim)),
+                 bound     = largest_row(of_dilatations, true, of_blocks);
     return {bound, sharp_bound(*this, bound, [&](Vector &vector) { this->fill_noise(vector); })};
   }
 
@@ -358,7 +372,7 @@ namespace PeriDeal
   Inversion StateOperator<dim>::inverted(const Vector &u) const
   {
     // Displacements may be of any size.
-    if ((solid.law.any() || solid.yielding) && !solid.kinematics.is_full())
+    if ((solid.law.any() || solid.flows()) && !solid.kinematics.is_full())
       return {};
     const Nodes<dim> &nodes  = solid.families.nodes();
     const auto       &layout = *nodes.partitioner();
@@ -397,7 +411,7 @@ namespace PeriDeal
                   solid.kinematics.memory_consumption() + solid.forces.memory_consumption() +
                   rows.memory_consumption() + solid.sums.memory_consumption() +
                   (solid.ends.images ? solid.ends.images->memory_consumption() : 0) +
-                  (solid.yielding ? solid.yielding->memory_consumption() : 0) +
+                  (solid.by_family ? solid.by_family->memory_consumption() : 0) +
                   contact->memory_consumption();
     size.form = solid.sums.has_lattice() ? "lattice" : "stored";
     return size;
@@ -407,8 +421,8 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::accept(const Vector &u, const double t)
   {
-    if (solid.yielding)
-      this->released_beside.by_law += solid.yielding->accept(u);
+    if (solid.flows())
+      this->released_beside.by_law += solid.by_family->accept(u);
     if (!solid.law.any())
       return;
     solid.law.set_time(t);
@@ -522,7 +536,7 @@ namespace PeriDeal
     const std::vector<unsigned int> &losing = breakage.nodes_at_work();
     const double n_losing = Utilities::MPI::sum(1. * losing.size(), nodes.communicator());
     double       hinder   = n_losing > 0.1 * nodes.n_global() ? 1. : 0.;
-    if (solid.law.any() || solid.yielding ||
+    if (solid.law.any() || solid.by_family ||
         (nonlinear() ? solid.ends.images != nullptr :
                        !solid.sums.has_lattice() || solid.thermal.any()))
       hinder = 1.;
@@ -561,7 +575,10 @@ namespace PeriDeal
   {
     const unsigned long long before = this->n_broken_bonds();
     const auto               change = breakage.break_bonds(u, t, share, [&]() {
-      return solid.forces.energy_of(breakage.nodes_at_work(), u);
+      solid.renew_gradients(breakage.nodes_at_work());
+      const auto *const nodal = solid.correspondence();
+      return nodal != nullptr ? nodal->energy_of(breakage.nodes_at_work(), u) :
+                                              solid.forces.energy_of(breakage.nodes_at_work(), u);
     });
     if (!change)
       return 0;
@@ -589,7 +606,9 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *of_nodes)
   {
-    if (of_nodes && !solid.ends.images)
+    if (!of_nodes)
+      solid.renew_gradients(solid.rows.body.nodes);
+    if (of_nodes && !solid.ends.images && !solid.correspondence())
       mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
     else if (!of_nodes || !this->forgoes_diagonal)
       find_stiffness_diagonal(solid, stiffness_diagonal);
@@ -611,13 +630,13 @@ namespace PeriDeal
     });
     if (archive.loads() && this->brittle())
       follow_bonds();
-    if (!solid.law.any() && !solid.yielding)
+    if (!solid.law.any() && !solid.flows())
       return;
     const Archive::Part part(archive, "law");
     solid.law.exchange(archive);
     archive.exchange("dissipated", this->released_beside.by_law);
-    if (solid.yielding)
-      solid.yielding->exchange(archive, keys);
+    if (solid.flows())
+      solid.by_family->exchange(archive, keys);
     if (solid.law.n_history() > 0)
       exchange_histories(solid.rows, archive, keys, solid.law.n_history());
   }

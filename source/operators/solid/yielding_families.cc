@@ -11,9 +11,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <type_traits>
 
 #include "change_along.h"
+#include "family_sums.h"
 
 namespace PeriDeal
 {
@@ -68,26 +68,6 @@ namespace PeriDeal
   }
 
 
-  template <int dim>
-  template <typename Visit>
-  void YieldingFamilies<dim>::for_each_family(const Visit &visit) const
-  {
-    const BondRows<dim> &beyond = bonds.beyond;
-    std::size_t          row    = 0;
-    for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
-      {
-        const Span inside{bonds.body.starts[i], bonds.body.starts[i + 1]};
-        Span       outside;
-        if (row < beyond.nodes.size() && beyond.nodes[row] == i)
-          {
-            outside = {beyond.starts[row], beyond.starts[row + 1]};
-            ++row;
-          }
-        visit(i, inside, outside);
-      }
-  }
-
-
   namespace
   {
     /** Stretches of bonds of a node; returns the sum of S s. */
@@ -139,7 +119,7 @@ namespace PeriDeal
     const double *const values = u.begin();
     ends.find(values);
     double *const body = trial.stretches.body.data(), *const beyond = trial.stretches.beyond.data();
-    for_each_family([&](const unsigned int i, const Span &inside, const Span &outside) {
+    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
       const double *const own = values + dim * i;
       double              sum = find_stretches(
         bonds.body,
@@ -187,56 +167,33 @@ namespace PeriDeal
 
 
   template <int dim>
-  template <typename Force>
-  void YieldingFamilies<dim>::sum_forces(Vector &y, const Force &force) const
-  {
-    const FictitiousImages<dim> *images = ends.images.get();
-    if (images)
-      images->begin_forces();
-    for_each_family([&](const unsigned int i, const Span &inside, const Span &outside) {
-      Tensor<1, dim> sum;
-      for (std::size_t k = inside.begin; k < inside.end; ++k)
-        sum += force(i, bonds.body, k, bonds.body.neighbors[k], std::true_type()) *
-               bonds.body.moments[k];
-      for (std::size_t k = outside.begin; k < outside.end; ++k)
-        {
-          const unsigned int   j = bonds.beyond.neighbors[k];
-          const Tensor<1, dim> of_bond =
-            force(i, bonds.beyond, k, j, std::false_type()) * bonds.beyond.moments[k];
-          sum += of_bond;
-          images->pull(ends.image(j), of_bond);
-        }
-      for (unsigned int d = 0; d < dim; ++d)
-        y.local_element(dim * i + d) = -sum[d];
-    });
-    if (images)
-      images->pass_on(y);
-  }
-
-
-  template <int dim>
   void YieldingFamilies<dim>::find_forces(Vector &y, const Vector &u) const
   {
     find(u);
     const double *const numbers = trial.numbers.begin();
-    sum_forces(y,
-               [&](const unsigned int   i,
-                   const BondRows<dim> &rows,
-                   const std::size_t    k,
-                   const unsigned int   j,
-                   const auto           has_family) {
-                 const double *const own     = numbers + n_numbers * i;
-                 const double *const plastic = rows.nonlinear.history.data() + n_history * k;
-                 if constexpr (!decltype(has_family)::value)
-                   return own[tension] + own[stiffness] * (trial.stretches.beyond[k] - plastic[0]);
-                 else
-                   {
-                     const double *const far = numbers + n_numbers * j;
-                     const double        s   = trial.stretches.body[k];
-                     return own[tension] + far[tension] + own[stiffness] * (s - plastic[0]) +
-                            far[stiffness] * (s - plastic[1]);
-                   }
-               });
+    sum_forces_of_families(
+      y,
+      bonds,
+      ends,
+      [&](const unsigned int   i,
+          const BondRows<dim> &rows,
+          const std::size_t    k,
+          const unsigned int   j,
+          const auto           has_family) -> Tensor<1, dim> {
+        const double *const own     = numbers + n_numbers * i;
+        const double *const plastic = rows.nonlinear.history.data() + n_history * k;
+        if constexpr (!decltype(has_family)::value)
+          return (own[tension] + own[stiffness] * (trial.stretches.beyond[k] - plastic[0])) *
+                 rows.moments[k];
+        else
+          {
+            const double *const far = numbers + n_numbers * j;
+            const double        s   = trial.stretches.body[k];
+            return (own[tension] + far[tension] + own[stiffness] * (s - plastic[0]) +
+                    far[stiffness] * (s - plastic[1])) *
+                   rows.moments[k];
+          }
+      });
     std::copy(y.begin(), y.begin() + y.locally_owned_size(), trial.forces.begin());
     trial.has_forces = true;
   }
@@ -306,7 +263,7 @@ namespace PeriDeal
     };
     std::vector<double> &body   = bonds.body.nonlinear.history,
                         &beyond = bonds.beyond.nonlinear.history;
-    for_each_family([&](const unsigned int i, const Span &inside, const Span &outside) {
+    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
       for (std::size_t k = inside.begin; k < inside.end; ++k)
         {
           const double s = trial.stretches.body[k];
@@ -330,26 +287,15 @@ namespace PeriDeal
         Vector y(trial.forces);
         find_forces(y, u);
       }
-    Tensor<1, 3> sums; // work, stored, nodes that yield
-    for (unsigned int k = 0; k < u.locally_owned_size(); ++k)
-      {
-        double &force    = accepted.forces.local_element(k),
-               &before   = accepted.displacement.local_element(k);
-        const double now = trial.forces.local_element(k), at = u.local_element(k);
-        sums[0] += 0.5 * (force + now) * (at - before);
-        force  = now;
-        before = at;
-      }
+    double stored = 0., n_yield = 0.;
     for (unsigned int i = 0; i < states.size(); ++i)
       {
-        sums[1] += families.nodes().volume(i) * trial.answers[i].stored;
-        sums[2] += trial.answers[i].yields() ? 1. : 0.;
+        stored += families.nodes().volume(i) * trial.answers[i].stored;
+        n_yield += trial.answers[i].yields() ? 1. : 0.;
       }
-    sums                    = Utilities::MPI::sum(sums, families.nodes().communicator());
-    const bool   yields     = sums[2] > 0.;
-    const double dissipated = yields && accepted.begun ? sums[0] - (sums[1] - accepted.stored) : 0.;
-    accepted.stored         = sums[1];
-    accepted.begun          = true;
+    bool         yields = false;
+    const double dissipated =
+      accepted.take(u, trial.forces, stored, n_yield, families.nodes().communicator(), yields);
     if (yields)
       remember();
     return dissipated;
@@ -369,10 +315,7 @@ namespace PeriDeal
     archive.exchange("of the plane", plane, keys);
     for (unsigned int i = 0; i < states.size(); ++i)
       states[i] = {strain.local_element(i), plane.local_element(i)};
-    archive.exchange("accepted displacement", accepted.displacement, keys);
-    archive.exchange("accepted forces", accepted.forces, keys);
-    archive.exchange("stored", accepted.stored);
-    archive.exchange("begun", accepted.begun);
+    accepted.exchange(archive, keys);
     exchange_histories(bonds, archive, keys, n_history);
     if (archive.loads())
       trial.known = false;
@@ -401,7 +344,7 @@ namespace PeriDeal
     };
     const std::vector<double> &body   = bonds.body.nonlinear.history,
                               &beyond = bonds.beyond.nonlinear.history;
-    for_each_family([&](const unsigned int i, const Span &inside, const Span &outside) {
+    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
       tangent.changes.local_element(n_changes * i + kept) = numbers[n_numbers * i + stiffness];
       for (std::size_t k = inside.begin; k < inside.end; ++k)
         {
@@ -430,7 +373,7 @@ namespace PeriDeal
                           values + dim * i,
                           ends.is_fictitious(j) ? images->value(ends.image(j)) : values + dim * j);
     };
-    for_each_family([&](const unsigned int i, const Span &inside, const Span &outside) {
+    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
       double sum = 0., of_sum = 0.;
       for (std::size_t k = inside.begin; k < inside.end; ++k)
         {
@@ -456,25 +399,29 @@ namespace PeriDeal
     });
     tangent.changes.update_ghost_values();
     const double *const changes = tangent.changes.begin();
-    sum_forces(y,
-               [&](const unsigned int   i,
-                   const BondRows<dim> &rows,
-                   const std::size_t    k,
-                   const unsigned int   j,
-                   const auto           has_family) {
-                 const double *const own = changes + n_changes * i;
-                 const double        s   = product(rows, i, k) / rows.squares[k];
-                 if constexpr (!decltype(has_family)::value)
-                   return own[of_tension] + own[kept] * s +
-                          own[of_stiffness] * tangent.elastic.beyond[k];
-                 else
-                   {
-                     const double *const far     = changes + n_changes * j;
-                     const double *const elastic = &tangent.elastic.body[n_history * k];
-                     return own[of_tension] + far[of_tension] + (own[kept] + far[kept]) * s +
-                            own[of_stiffness] * elastic[0] + far[of_stiffness] * elastic[1];
-                   }
-               });
+    sum_forces_of_families(
+      y,
+      bonds,
+      ends,
+      [&](const unsigned int   i,
+          const BondRows<dim> &rows,
+          const std::size_t    k,
+          const unsigned int   j,
+          const auto           has_family) -> Tensor<1, dim> {
+        const double *const own = changes + n_changes * i;
+        const double        s   = product(rows, i, k) / rows.squares[k];
+        if constexpr (!decltype(has_family)::value)
+          return (own[of_tension] + own[kept] * s + own[of_stiffness] * tangent.elastic.beyond[k]) *
+                 rows.moments[k];
+        else
+          {
+            const double *const far     = changes + n_changes * j;
+            const double *const elastic = &tangent.elastic.body[n_history * k];
+            return (own[of_tension] + far[of_tension] + (own[kept] + far[kept]) * s +
+                    own[of_stiffness] * elastic[0] + far[of_stiffness] * elastic[1]) *
+                   rows.moments[k];
+          }
+      });
     x.set_ghost_state(false);
   }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/operators/solid/bond_forces.h>
+#include <perideal/operators/solid/correspondence.h>
 #include <perideal/operators/solid/solid_sums.h>
 #include <perideal/operators/solid/yielding_families.h>
 
@@ -46,7 +47,31 @@ namespace PeriDeal
     BondKinematics<dim> kinematics;
     BondForces<dim>     forces;
 
-    std::unique_ptr<YieldingFamilies<dim>> yielding; // or none: in place of the forces
+    std::unique_ptr<FamilyForces<dim>> by_family; // or none: in place of the forces
+
+    /** by_family if it is that, else null. */
+    const YieldingFamilies<dim> *yielding() const
+    {
+      return dynamic_cast<const YieldingFamilies<dim> *>(by_family.get());
+    }
+
+    const Correspondence<dim> *correspondence() const
+    {
+      return dynamic_cast<const Correspondence<dim> *>(by_family.get());
+    }
+
+    /** Families make forces that are not linear. */
+    bool flows() const
+    {
+      return by_family && !by_family->is_linear();
+    }
+
+    /** Some bonds of these owned nodes bear nothing any more. Not collective. */
+    void renew_gradients(const std::vector<unsigned int> &of_nodes)
+    {
+      if (auto *const nodal = dynamic_cast<Correspondence<dim> *>(by_family.get()))
+        nodal->renew(of_nodes);
+    }
 
     /** What has been found at surfaces. */
     struct Corrections

@@ -3,20 +3,13 @@
 
 #pragma once
 
+#include <perideal/operators/solid/nodal_tensors.h>
 #include <perideal/operators/solid/solid_bonds.h>
 
 #include <vector>
 
 namespace PeriDeal
 {
-  /** At the nodes, for output: xx, yy, xy in 2D, xx, yy, zz, xy, xz, yz in 3D. */
-  template <int dim>
-  struct NodalTensors
-  {
-    std::vector<dealii::SymmetricTensor<2, dim>> stress, strain;
-  };
-
-
   /** theta of the owned nodes, thermal extension taken off. Collective. */
   template <int dim>
   std::vector<double> nodal_dilatations(const SolidBonds<dim> &bonds, const Vector &u);
@@ -26,7 +19,8 @@ namespace PeriDeal
    * The collapsed stress of the owned nodes, sum_j t_ij M (x) xi V_j (Le 2014 eq 1.26), or the mean
    * with that of the bonds' other ends (eq 3.1) where there are several phases, and the strain of
    * the nonlocal deformation gradient F (eq 1.25). With full kinematics Cauchy's stress, sum t_ij M
-   * (x) Y V_j/det F, and Green's strain, (F^T F - I)/2. Collective.
+   * (x) Y V_j/det F, and Green's strain, (F^T F - I)/2. With correspondence those that the law
+   * knows. Collective.
    *
    * @param tau c theta/q at u, with up-to-date ghosts
    */

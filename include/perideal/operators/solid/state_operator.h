@@ -35,7 +35,8 @@ namespace PeriDeal
    * bonds between it repels each other (ShortRangeContact).
    *
    * With another law than the linear one forces follow from extensions bond by bond, and K is the
-   * tangent (BondKinematics, BondLaw); where the body yields, family by family (YieldingFamilies).
+   * tangent (BondKinematics, BondLaw); where the body yields, and with correspondence in place of
+   * the formulas above, family by family (FamilyForces).
    *
    * Viscosity (Le 2014 eq 2.43) is K without the dilatations. Bonds are those of SolidBonds; which
    * break, BondBreaking decides.
@@ -71,7 +72,7 @@ namespace PeriDeal
     double       damping_bound() const override;
     bool         nonlinear() const override
     {
-      return solid.kinematics.is_full() || solid.yielding ||
+      return solid.kinematics.is_full() || solid.flows() ||
              (solid.law.any() && !solid.law->is_linear());
     }
 

@@ -3,9 +3,10 @@
 
 #pragma once
 
-#include <perideal/base/archive.h>
 #include <perideal/laws/ordinary_plasticity.h>
 #include <perideal/operators/solid/bond_table.h>
+#include <perideal/operators/solid/family_forces.h>
+#include <perideal/operators/solid/step_work.h>
 
 #include <vector>
 
@@ -21,11 +22,9 @@ namespace PeriDeal
    * stand in the rows of both ends (the history of BondRows, that of the row's own node first), so
    * that processes exchange what nodes make of their families and nothing of bonds. Fictitious
    * nodes have no families: of bonds to them one end counts.
-   *
-   * Trials leave nothing behind until accept(). Ghosts of displacements need not be up to date.
    */
   template <int dim>
-  class YieldingFamilies
+  class YieldingFamilies : public FamilyForces<dim>
   {
   public:
     static constexpr unsigned int n_history = 2; // of a bond
@@ -40,14 +39,18 @@ namespace PeriDeal
                      const NodeLaws<dim>       &laws,
                      const BodyParameters<dim> &body);
 
+    bool is_linear() const override
+    {
+      return false;
+    }
+
     /** What families make of u. Collective. */
     void find(const Vector &u) const;
 
-    /** y = -F at u. Collective. */
-    void find_forces(Vector &y, const Vector &u) const;
+    void find_forces(Vector &y, const Vector &u) const override;
 
-    /** What is stored, by hardening, too. Collective. */
-    double energy(const Vector &u) const;
+    /** By hardening, too. Collective. */
+    double energy(const Vector &u) const override;
 
     /**
      * The yield stress without hardening times what plastic strains have grown by in the step to u,
@@ -55,33 +58,24 @@ namespace PeriDeal
      */
     double plastic_work(const Vector &u) const;
 
-    /**
-     * Go on from u. Returns what the step has dissipated: the work by the mean of the forces before
-     * and now, less what of it is stored; 0 of the first state, to which no step leads. Where steps
-     * are short that is plastic_work(). Collective.
-     */
-    double accept(const Vector &u);
+    /** Where steps are short what it returns is plastic_work(). Collective. */
+    double accept(const Vector &u) override;
 
-    /** Collective. */
-    void exchange(Archive &archive, const NodeKeys &keys);
-
-    /** Make multiply() the tangent at u. Collective. */
-    void linearize(const Vector &u);
+    void exchange(Archive &archive, const NodeKeys &keys) override;
+    void linearize(const Vector &u) override;
 
     /** Nodes yielded at the last linearize(): else K is that of the elastic body. */
-    bool has_tangent() const
+    bool has_tangent() const override
     {
       return tangent.any;
     }
 
-    /** K is that of the elastic body until linearize(): no body that yields is stiffer. */
-    void forget_tangent()
+    void forget_tangent() override
     {
       tangent.any = false;
     }
 
-    /** y = K x of the tangent. Collective. */
-    void multiply(Vector &y, const Vector &x) const;
+    void multiply(Vector &y, const Vector &x) const override;
 
     /** The equivalent plastic strain of an owned node, at the last accepted step. */
     double plastic_strain(const unsigned int i) const
@@ -101,15 +95,9 @@ namespace PeriDeal
      */
     double force(const unsigned int i, const SolidBond<dim> &bond, const bool half_of_both) const;
 
-    std::size_t memory_consumption() const;
+    std::size_t memory_consumption() const override;
 
   private:
-    /** Bonds of a node, among those in the body or beyond its sides. */
-    struct Span
-    {
-      std::size_t begin = 0, end = 0;
-    };
-
     /** Numbers of each bond, in the order of rows. */
     struct OfBonds
     {
@@ -135,14 +123,6 @@ namespace PeriDeal
       n_changes
     };
 
-    /** visit(i, in the body, beyond) of all owned nodes. */
-    template <typename Visit>
-    void for_each_family(const Visit &visit) const;
-
-    /** Of forces that are force(i, rows, bond, far end, whether that has a family). */
-    template <typename Force>
-    void sum_forces(Vector &y, const Force &force) const;
-
     bool        knows(const Vector &u) const;
     void        remember();
     std::size_t size_of(const OfBonds &numbers) const
@@ -165,12 +145,7 @@ namespace PeriDeal
       OfBonds                                 stretches;
     } mutable trial;
 
-    struct
-    {
-      bool   begun  = false;
-      double stored = 0.;
-      Vector displacement, forces;
-    } accepted;
+    StepWork accepted;
 
     struct
     {

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/archive.h>
+#include <perideal/base/types.h>
+
+namespace PeriDeal
+{
+  /**
+   * Forces that nodes make of their families as a whole, in place of those that bonds make one by
+   * one (SolidSums, BondForces). Kinematics are linear.
+   *
+   * Trials leave nothing behind until accept(). Ghosts of displacements need not be up to date.
+   */
+  template <int dim>
+  class FamilyForces
+  {
+  public:
+    virtual ~FamilyForces() = default;
+
+    /** Forces are K u. Not collective. */
+    virtual bool is_linear() const = 0;
+
+    /** K is that of multiply(); else that of the linear bonds. Not collective. */
+    virtual bool has_tangent() const = 0;
+
+    /** y = K x. Collective. */
+    virtual void multiply(Vector &y, const Vector &x) const = 0;
+
+    /** y = -F at u, by thermal strains, too. Collective. */
+    virtual void find_forces(Vector &y, const Vector &u) const = 0;
+
+    /** What is stored. Collective. */
+    virtual double energy(const Vector &u) const = 0;
+
+    /** Go on from u. Returns what the step has dissipated (StepWork). Collective. */
+    virtual double accept(const Vector &u) = 0;
+
+    /** Collective. */
+    virtual void exchange(Archive &archive, const NodeKeys &keys) = 0;
+
+    /** Make K the tangent at u. Collective. */
+    virtual void linearize(const Vector &u) = 0;
+
+    /** K is that of the elastic body until linearize(): no body that yields is stiffer. */
+    virtual void forget_tangent() = 0;
+
+    virtual std::size_t memory_consumption() const = 0;
+  };
+} // namespace PeriDeal

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Correspondence: laws of stresses at the nodes of peridynamics.
+
+    correspondence.py lamina      a lamina off its axes, and the teaching scene
+    correspondence.py bodies      a console as by the ordinary solid and elements, rows that are pulled, a warm body in space, cracks
+    correspondence.py flow        limit pressure of a ring, a plate that yields on several processes
+    correspondence.py motion      speed of waves, energy, processes
+    correspondence.py breaking    bodies whose bonds break, at rest and in motion
+
+Bounds that follow from no theory are about 1.5 times the gap that was measured; the comment beside them gives it.
+"""
+
+import math
+
+from scene_test import FE, PD, Comparison, check, run_parts, run_scene, scene_text
+from yielding import PLATE, RING, ring_mesh, share_lost
+from yielding import STRUCK as YIELDING
+
+NODAL = {"Elasticity/Model": "correspondence", "Peridynamics/Horizon ratio": "2", "Peridynamics/Kernel exponent": "auto"}
+QUIET = {"Output/Fields": "none"}
+TIGHT = {**QUIET, "Solver/Tolerance": "1e-12"}
+LAMINA = "prm/elasticity/correspondence_lamina.prm"
+STRUCK = "prm/fracture/kalthoff_winkler.prm"
+TORN = "prm/fracture/torn_strip.prm"
+
+SQUARE = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = peridynamics
+Domain/Lower corner = 0, 0
+Domain/Upper corner = 1, 1
+Domain/Cells = 24, 24
+Elasticity/Plane = stress
+Elasticity/Solver = linear
+Elasticity/Model = correspondence
+Peridynamics/Horizon ratio = 2
+Output/Fields = none
+""")
+
+
+def lamina():
+    """1/E along x of a square that is free at three sides, by the angle of its fibres."""
+    table = Comparison("a lamina that is pulled off its axes")
+    E1, E2, G12, nu12 = 150, 10, 5, 0.3
+    for angle in (0, 15, 30, 45, 90):
+        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        # Jones, Mechanics of Composite Materials, 2.8: S_xx, S_xy, S_xs
+        along = c**4 / E1 + s**4 / E2 + (1 / G12 - 2 * nu12 / E1) * c**2 * s**2
+        across = (1 / E1 + 1 / E2 - 1 / G12) * c**2 * s**2 - nu12 / E1 * (c**4 + s**4)
+        shear = (2 / E1 + 2 * nu12 / E1 - 1 / G12) * s * c**3 - (2 / E2 + 2 * nu12 / E1 - 1 / G12) * s**3 * c
+        run = run_scene(SQUARE, {"Material/Young moduli": "150, 10", "Material/Shear moduli": "5", "Material/Poisson ratios": "0.3", "Material/Material angle": str(angle),
+                                 "Boundary conditions/Displacement": f"left: {shear / 2}*y, {across}*y", "Boundary conditions/Traction": "right: 1, 0", "Output/Probes": "0.25,0.5 ; 0.75,0.5"})
+        left, right = run.rows(PD)
+        table.add(f"{angle} degrees: 1/E", (right["ux"] - left["ux"]) / 0.5, along, relative=0.003)  # measured: 0.2 %
+    run = run_scene(LAMINA, QUIET)
+    for model in (FE, PD):
+        left, right = run.rows(model)
+        table.add(f"{LAMINA}, {model}", right["ux"] - left["ux"], 0.05 * 0.04675, relative=1e-3)
+    table.show()
+
+
+CONSOLE = {"Models": "finite elements, peridynamics", "Domain/Cells": "40, 40", "Material/Young modulus": "1", "Material/Poisson ratio": "0.25", "Elasticity/Plane": "strain",
+           "Boundary conditions/Displacement": "left: 0, 0", "Boundary conditions/Traction": "right: 0.1*(1 + y), 0.3*y*(1 - y) ; top: 0, 0.8*x*x*(1 - x)*(1 - x)",
+           "Output/Probes": "0.25,0.25 ; 0.5,0.5 ; 0.75,0.25 ; 1,0.1 ; 1,0.5 ; 1,0.9"}
+HELD = {"Models": "finite elements, peridynamics", "Domain/Cells": "40, 40", "Material/Young modulus": "1", "Material/Poisson ratio": "0.3",
+        "Boundary conditions/Displacement": "left: 0, free ; right: 0, free ; bottom: free, 0", "Output/Line": "0,0.5 ; 1,0.5 ; 41"}
+BLOCK = scene_text("""
+Dimension = 3
+Physics = elasticity
+Models = finite elements, peridynamics
+Domain/Lower corner = 0, 0, 0
+Domain/Upper corner = 2, 1, 1
+Domain/Cells = 40, 20, 20
+Material/Young modulus = 1
+Material/Poisson ratio = 0.3
+Material/Thermal expansion = 0.01
+Elasticity/Temperature change = x
+Elasticity/Solver = linear
+Elasticity/Model = correspondence
+Boundary conditions/Symmetry = left, bottom, back
+Peridynamics/Horizon ratio = 2
+Output/Fields = none
+Output/Probes = 2,1,1 ; 1,0.5,0.5
+""")
+
+
+def alternating(run, model):
+    """How much ux goes up and down from node to node along the line."""
+    u = run.along_line(model, column="ux")
+    return max(abs(u[k - 2] - 4 * u[k - 1] + 6 * u[k] - 4 * u[k + 1] + u[k + 2]) / 16 for k in range(2, len(u) - 2))
+
+
+def bodies():
+    table = Comparison("bodies by correspondence, and in another way")
+    nodal, ordinary = (run_scene(SQUARE, {**CONSOLE, "Elasticity/Model": model}) for model in ("correspondence", "state-based"))
+    most = max(abs(row["ux"]) for row in ordinary.rows(PD))
+    for k, (a, b, c) in enumerate(zip(nodal.rows(PD), ordinary.rows(PD), nodal.rows(FE))):
+        table.add(f"console, place {k + 1}, against the ordinary solid", a["ux"], b["ux"], absolute=0.006 * most)  # measured: 0.4 %
+        table.add(f"console, place {k + 1}, against elements", a["ux"], c["ux"], absolute=0.012 * most)  # measured: 0.8 %
+    for name, force in (("a row", "if(abs(x - 0.5) < 0.01, 4, 0), 0"), ("a node", "if(abs(x - 0.5) < 0.01, if(abs(y - 0.5) < 0.01, 160, 0), 0), 0")):
+        run = run_scene(SQUARE, {**HELD, "Initial and source/Body force": force})
+        # Measured: 1.3, 1.0.
+        table.add_limit(f"{name} that is pulled: up and down, over that of elements", alternating(run, PD) / alternating(run, FE), 2)
+    run = run_scene(BLOCK)
+    for k, (a, b) in enumerate(zip(run.rows(PD), run.rows(FE))):
+        for column in ("ux", "uy"):
+            table.add(f"warm block, place {k + 1}, {column}", a[column], b[column], relative=0.022)  # measured: 1.5 %
+    cracked = {**HELD, "Boundary conditions/Displacement": "bottom: free, 0 ; top: free, 0.01 ; left: 0, free", "Cracks/Segments": "0,0.51 ; 0.41,0.51"}
+    run = run_scene(SQUARE, cracked)
+    table.add("cracked square: force", run.total("force on top in y", PD), run.total("force on top in y", FE), relative=0.011)  # measured: 0.7 %
+    table.show()
+
+
+def flow():
+    table = Comparison("Bodies that yield, by correspondence")
+    limit, mesh = 2 / math.sqrt(3) * math.log(2), ring_mesh()
+    # Measured: 0.09 % where families end, -0.71 % where they go on beyond the sides.
+    for correction, bound in (("none", 0.002), ("auto", 0.011)):
+        run = run_scene(RING, {"Domain/Mesh file": mesh, "Peridynamics/Horizon": "0.1", "Elasticity/Model": "correspondence", "Peridynamics/Surface correction": correction})
+        table.add(f"limit pressure of a ring, 'Surface correction = {correction}'", run.total("force on 3 in x", PD), limit, relative=bound)
+        table.add_limit("imbalance of energy", share_lost(run), 1e-9)
+    runs = {ranks: run_scene(PLATE, {**NODAL, **QUIET, "Solver/Tolerance": "1e-10", "Domain/Cells": "20, 20", "Time/Time step": "0.1"}, ranks=ranks) for ranks in (1, 2, 4)}
+    table.add_limit("plate: imbalance of energy", share_lost(runs[1]), 1e-9)
+    quantities = ("force on right in x", "strain energy", "energy dissipated by the law")
+    for ranks in (2, 4):
+        for quantity in quantities:
+            table.add(f"{quantity}, {ranks} processes", runs[ranks].total(quantity, PD), runs[1].total(quantity, PD), relative=1e-7)
+    table.show()
+
+
+BAR = {"Domain/Upper corner": "4, 0.4", "Domain/Cells": "80, 8", "Material/Young modulus": "1", "Material/Poisson ratio": "0", "Material/Density": "1.0", "Elasticity/Solver": "dynamics",
+       "Boundary conditions/Velocity": "left: 0.01*min(t/0.2, 1), free", "Boundary conditions/Symmetry": "bottom", "Time/End time": "2.5", "Output/Probes": "1,0.2 ; 2,0.2"}
+
+
+def motion():
+    table = Comparison("a bar that is struck")
+    runs = {ranks: run_scene(SQUARE, BAR, ranks=ranks) for ranks in (1, 2, 4)}
+    first, second = (row["ux"] for row in runs[1].rows(PD, time=2.5))
+    table.add("speed of the wave", 0.01 / (first - second), 1, relative=0.005)
+    table.add("first place passed after", 2.4 - first / 0.01, 1, relative=0.005)
+    work, drift = (runs[1].total(quantity, PD) for quantity in ("work of loads and supports", "energy drift"))
+    table.add_limit("drift of energy over work", abs(drift / work), 1e-9)
+    for ranks in (2, 4):
+        for row, expected in zip(runs[ranks].rows(PD, time=2.5), runs[1].rows(PD, time=2.5)):
+            table.add(f"ux at x = {row['x']}, {ranks} processes", row["ux"], expected["ux"], relative=1e-12)
+    table.show()
+    # A plate that is struck and yields
+    struck = [run_scene(PLATE, {**YIELDING, **NODAL}, ranks=ranks) for ranks in (1, 2, 4)]
+    for run, ranks in zip(struck[1:], (2, 4)):
+        check(run.probes == struck[0].probes, f"the same digits on {ranks} processes")
+    heat, work, drift = (struck[0].total(quantity, PD) for quantity in ("energy dissipated by the law", "work of loads and supports", "energy drift"))
+    check(heat > 0.2 * work, f"the plate yields: {heat} of {work}")
+    check(abs(drift) < 1e-9 * work, f"energy is kept: {drift} of {work}")
+
+
+def breaking():
+    table = Comparison("bodies whose bonds break, by correspondence")
+    run = run_scene(TORN, {**NODAL, **QUIET})
+    for row in run.rows(PD, time=1):
+        table.add(f"torn strip: ux at {row['x']}", row["ux"], 0 if row["x"] < 0.5 else 0.02, absolute=1e-5)  # measured: 4.1e-6, what heat strains it by
+    runs = {ranks: run_scene(STRUCK, {**NODAL, **QUIET, "Domain/Cells": "40, 81"}, ranks=ranks) for ranks in (1, 2)}
+    released, drift, imbalance = (runs[1].total(quantity, PD) for quantity in ("energy released by broken bonds", "energy drift", "energy imbalance"))
+    check(runs[1].total("broken bonds", PD) > 300, "bonds break")
+    table.add_limit("struck plate: drift of energy over what is released", abs(drift / released), 1e-9)
+    table.add_limit("struck plate: what is missing of it", abs(imbalance / released), 0.02)
+    table.add("broken bonds on 2 processes", runs[2].total("broken bonds", PD), runs[1].total("broken bonds", PD), absolute=0)
+    table.show()
+
+
+if __name__ == "__main__":
+    run_parts(lamina, bodies, flow, motion, breaking)
