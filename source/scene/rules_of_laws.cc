@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/instantiate.h>
+#include <perideal/scene/rules.h>
+
+namespace PeriDeal
+{
+  namespace
+  {
+    template <int dim>
+    void refuse_softening_bonds(const BodyParameters<dim> &body, const bool by_elements)
+    {
+      if (!body.material.law.softens())
+        return;
+      body.material.refuse(
+        by_elements,
+        "Law",
+        "'softening' is one of bonds, and is for 'Models = peridynamics' alone.");
+      body.material.refuse(
+        !body.cracks.tips.empty(),
+        "Law",
+        "'softening' is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks'): bonds soften and break where they are stretched. Leave these out.");
+      body.elasticity.refuse(
+        body.elasticity.is_given("Breaking"),
+        "Breaking",
+        "is for bonds that break at once; with 'Law = softening' (section 'Material') they soften from equilibrium to equilibrium. Leave it out.");
+      body.elasticity.refuse(
+        body.elasticity.text("Crack direction") == "mean tension",
+        "Crack direction",
+        "'mean tension' is for bonds that break at once, not for 'Law = softening' (section 'Material'). Leave it out.");
+    }
+
+
+    template <int dim>
+    void refuse_plastic_body(const BodyParameters<dim> &body,
+                             const bool                 by_elements,
+                             const bool                 coupled)
+    {
+      if (!body.material.law.yields())
+        return;
+      const auto refuse = [&](const bool is_so, const std::string &why) {
+        body.material.refuse(is_so, "Law", "found 'plastic', " + why);
+      };
+      refuse(
+        coupled,
+        "which finite elements and peridynamics know, but 'coupled' in 'Models' does not. Leave it out.");
+      refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
+      refuse(
+        body.elasticity.is_bond_based(),
+        "a yield stress for shear alone, which 'Model = bond-based' (section 'Elasticity') cannot have. Use 'state-based'.");
+      refuse(body.elasticity.has_full_kinematics(),
+             "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");
+      refuse(body.material.breaks(),
+             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
+      refuse(!body.cracks.tips.empty(),
+             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+      body.peridynamics.refuse(
+        !by_elements && body.peridynamics.corrects_elastic_bonds(),
+        "Surface correction",
+        "found '" + body.peridynamics.text("Surface correction") +
+          "', whose factors of bonds are those of linear forces; with 'Law = plastic' in section 'Material' use 'auto', 'fictitious nodes' or 'none'.");
+      const bool is_warm = body.elasticity.computes_temperature ||
+                           !is_zero(body.elasticity.temperature_change);
+      refuse(is_warm, "which knows no 'Temperature change' (section 'Elasticity').");
+      body.elasticity.refuse(
+        body.elasticity.solver == ElasticSolver::linear,
+        "Solver",
+        "is 'linear', but 'Law = plastic' in section 'Material' is not. Use 'newton', 'conjugate gradients', or 'dynamics'.");
+    }
+
+
+    template <int dim>
+    void refuse_user_law(const BodyParameters<dim> &body,
+                         const bool                 by_elements,
+                         const bool                 coupled)
+    {
+      if (body.material.law.kind != SolidLaw::user)
+        return;
+      const auto refuse = [&](const bool is_so, const std::string &why) {
+        body.material.refuse(is_so, "Law", "found 'user', " + why);
+      };
+      refuse(!by_elements || coupled,
+             "a law of stresses, which is for 'Models = finite elements' alone. Leave the others "
+             "out.");
+      refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
+      refuse(body.elasticity.has_full_kinematics(),
+             "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");
+      refuse(body.material.breaks(),
+             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
+      refuse(!body.cracks.tips.empty(),
+             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+      refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
+             "which knows no 'Temperature change' (section 'Elasticity').");
+      body.elasticity.refuse(
+        body.elasticity.solver == ElasticSolver::linear,
+        "Solver",
+        "is 'linear', but 'Law = user' in section 'Material' need not be. Use 'newton', 'conjugate "
+        "gradients', or 'dynamics'.");
+    }
+
+
+    template <int dim>
+    void refuse_orthotropic_body(const BodyParameters<dim> &body,
+                                 const bool                 by_elements,
+                                 const bool                 coupled)
+    {
+      if (body.material.law.orthotropy.young.empty())
+        return;
+      const auto refuse = [&](const bool is_so, const std::string &why) {
+        body.material.refuse(is_so, "Young moduli", why);
+      };
+      refuse(
+        (!by_elements && !body.elasticity.is_correspondence()) || coupled,
+        "makes the body orthotropic, which is for 'Models = finite elements': bonds have two moduli. Use that, or 'Model = correspondence' (section 'Elasticity') with 'Models = peridynamics', or give "
+        "'Young modulus' and 'Poisson ratio'.");
+      refuse(
+        !by_elements && body.material.breaks(),
+        "makes the body orthotropic, whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
+      refuse(
+        body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
+        "makes the body orthotropic, which knows no 'Temperature change' (section 'Elasticity'). Leave one of them out.");
+      refuse(
+        body.elasticity.absolute_reference.has_value(),
+        "makes the body orthotropic, which knows no 'Heat of deformation' (section 'Elasticity'). Leave one of them out.");
+    }
+
+
+    template <int dim>
+    void refuse_correspondence(const BodyParameters<dim> &body,
+                               const bool                 by_elements,
+                               const bool                 coupled)
+    {
+      if (!body.elasticity.is_correspondence() || (by_elements && !coupled))
+        return;
+      const auto refuse = [&](const bool is_so, const std::string &why) {
+        body.elasticity.refuse(is_so, "Model", "found 'correspondence', " + why);
+      };
+      const SolidLaw kind = body.material.law.kind;
+      refuse(coupled,
+             "which is for 'Models = peridynamics', not for 'coupled'. Use 'state-based'.");
+      refuse(dim == 1, "which is for 'Dimension' 2 and 3. Use 'state-based'.");
+      refuse(body.elasticity.has_full_kinematics(),
+             "which is for small displacements. Use 'Kinematics = linear', or 'state-based'.");
+      refuse(kind == SolidLaw::viscoelastic || kind == SolidLaw::softening ||
+               kind == SolidLaw::formula,
+             "whose nodes have a law of stresses; 'Law = " + body.material.text("Law") +
+               "' (section 'Material') is one of bonds. Use 'state-based'.");
+      refuse(
+        !body.material.law.interfaces.empty(),
+        "whose bonds know no 'Interfaces' (section 'Material'). Leave these out, or use 'state-based'.");
+      refuse(
+        body.elasticity.text("Crack direction") == "mean tension",
+        "whose bonds do not tell the tension that 'Crack direction = mean tension' goes by. Use 'bonds' there, or 'state-based'.");
+      body.peridynamics.refuse(
+        body.peridynamics.corrects_elastic_bonds(),
+        "Surface correction",
+        "found '" + body.peridynamics.text("Surface correction") +
+          "', whose factors are those of the bonds of 'Model = state-based'; nodes of 'correspondence' have their strain at surfaces, too. Use 'auto', 'fictitious nodes' or 'none'.");
+    }
+  } // namespace
+
+
+  template <int dim>
+  void refuse_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled)
+  {
+    const Material &material = body.material;
+    const SolidLaw  kind     = material.law.kind;
+    refuse_correspondence(body, by_elements, coupled);
+    refuse_orthotropic_body(body, by_elements, coupled);
+    if (kind == SolidLaw::linear)
+      return;
+    body.coupling.refuse(
+      kind == SolidLaw::viscoelastic && coupled && body.coupling.scheme != CouplingScheme::blending,
+      "Scheme",
+      "found '" + body.coupling.text("Scheme") +
+        "', whose bonds take over bulk stiffness, too; with 'Law = viscoelastic' in section 'Material' use 'blending'.");
+    material.refuse(
+      kind == SolidLaw::formula && by_elements && !coupled,
+      "Law",
+      "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
+    refuse_softening_bonds(body, by_elements);
+    refuse_plastic_body(body, by_elements, coupled);
+    refuse_user_law(body, by_elements, coupled);
+    const bool is_warm = body.elasticity.computes_temperature ||
+                         !is_zero(body.elasticity.temperature_change);
+    material.refuse(by_elements && is_warm,
+                    "Law",
+                    "found '" + material.text("Law") +
+                      "', which knows no 'Temperature change' (section 'Elasticity'), beside or "
+                      "instead of finite elements; use 'Models = peridynamics'.");
+    material.refuse(
+      kind == SolidLaw::viscoelastic && dim == 2 && is_warm,
+      "Law",
+      "'viscoelastic' knows no 'Temperature change' (section 'Elasticity') in plane strain, where what the temperature strains the body by out of the plane would relax, too; use 'Dimension = 3'.");
+    body.coupling.refuse(
+      kind == SolidLaw::formula && coupled && body.coupling.splices(),
+      "Scheme",
+      "'splice' is for 'Law = linear' (section 'Material'); use 'exchange' or 'blending'.");
+    material.refuse(
+      kind == SolidLaw::viscoelastic && (dim == 1 || body.elasticity.is_bond_based()),
+      "Law",
+      "'viscoelastic' is a shear modulus that relaxes while the bulk modulus stays: it "
+      "is for 'Dimension' 2 and 3 with 'Model = state-based'.");
+    material.refuse(
+      kind == SolidLaw::viscoelastic && dim == 2 && body.elasticity.plane == PlaneState::stress,
+      "Law",
+      "'viscoelastic' is for 'Plane = strain' in section 'Elasticity': in plane stress "
+      "the strain out of the plane would relax, too.");
+    body.elasticity.refuse(
+      kind == SolidLaw::formula && body.elasticity.solver == ElasticSolver::linear,
+      "Solver",
+      "is 'linear', but 'Law = formula' in section 'Material' is not. Use 'newton', 'conjugate gradients', or 'dynamics'.");
+    body.elasticity.refuse(body.elasticity.absolute_reference.has_value(),
+                           "Heat of deformation",
+                           "is that of the linear law; 'Law' in section 'Material' is '" +
+                             material.text("Law") + "'.");
+  }
+
+
+  PERIDEAL_INSTANTIATE_FUNCTION(refuse_law);
+} // namespace PeriDeal
