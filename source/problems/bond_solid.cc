@@ -12,6 +12,7 @@
 #include <perideal/operators/solid/surface_stiffness.h>
 #include <perideal/scene/beyond_sides.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/user_properties.h>
 
 #include <algorithm>
 #include <cmath>
@@ -429,6 +430,8 @@ namespace PeriDeal
       ChosenSettings settings() const override
       {
         auto list = this->bond_settings(states->bonds().families);
+        if (const std::string law = user_law_text(scene.material); !law.empty())
+          list.emplace_back("law", law);
         if (!states->brittle())
           return list;
         double lowest = 1e300, highest = 0.;

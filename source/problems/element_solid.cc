@@ -15,6 +15,7 @@
 #include <perideal/laws/entropy_of_deformation.h>
 #include <perideal/operators/solid/elastic_elements.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/user_properties.h>
 
 #include <algorithm>
 #include <cmath>
@@ -515,11 +516,8 @@ namespace PeriDeal
       {
         ChosenSettings list;
         list.emplace_back("elements", "Q" + std::to_string(degree()));
-        if (const auto &law = scene.material.law; law.kind == SolidLaw::user)
-          list.emplace_back("law",
-                            law.user.library +
-                              ", properties: " + std::to_string(law.user.properties.size()) +
-                              ", states: " + std::to_string(law.user.n_states));
+        if (const std::string law = user_law_text(scene.material); !law.empty())
+          list.emplace_back("law", law);
         if (model == ModelKind::coupled)
           {
             list.emplace_back("coupling", scene.coupling.scheme_text());

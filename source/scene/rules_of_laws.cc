@@ -80,9 +80,9 @@ namespace PeriDeal
       const auto refuse = [&](const bool is_so, const std::string &why) {
         body.material.refuse(is_so, "Law", "found 'user', " + why);
       };
-      refuse(!by_elements || coupled,
-             "a law of stresses, which is for 'Models = finite elements' alone. Leave the others "
-             "out.");
+      refuse(
+        (!by_elements && !body.elasticity.is_correspondence()) || coupled,
+        "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' with 'Model = correspondence' (section 'Elasticity'). Use these.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
       refuse(body.elasticity.has_full_kinematics(),
              "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");

@@ -35,4 +35,14 @@ namespace PeriDeal
       }
     return of_phases;
   }
+
+
+  std::string user_law_text(const Material &material)
+  {
+    const auto &law = material.law;
+    return law.kind != SolidLaw::user ?
+             "" :
+             law.user.library + ", properties: " + std::to_string(law.user.properties.size()) +
+               ", states: " + std::to_string(law.user.n_states);
+  }
 } // namespace PeriDeal

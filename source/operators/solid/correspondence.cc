@@ -190,6 +190,7 @@ namespace PeriDeal
     , bonds(bonds)
     , laws(laws)
     , thermal(thermal)
+    , steps(StressSteps::of_scene(body))
   {
     Assert(!bonds.body.is_packed() && !bonds.beyond.is_packed(), ExcInternalError());
     const Nodes<dim>    &nodes  = families.nodes();
@@ -222,8 +223,10 @@ namespace PeriDeal
       {
         typename J2Plasticity::Beside none;
         ask(i, 0., &shapes[i].elastic, none);
-        shapes[i].shear = soft_shear(shapes[i].elastic);
+        if (steps.fault.empty()) // else it is zero
+          shapes[i].shear = soft_shear(shapes[i].elastic);
       }
+    steps.throw_faults(*law.law, nodes.communicator());
     weights.resize(bonds);
     std::vector<unsigned int> all(nodes.n_owned());
     std::iota(all.begin(), all.end(), 0U);
@@ -279,15 +282,17 @@ namespace PeriDeal
     Full strain = symmetrize(trial.slopes[i]);
     for (unsigned int d = 0; thermal.any() && d < dim; ++d)
       strain[d][d] -= thermal[i];
-    StressLaw::Tangent     full;
-    StressLaw::Tangent    *wanted = of_tangent == nullptr ? nullptr : &full;
-    const StressLaw::Trial at{in_space<dim>(strain),
-                              law.parameters.data() + i * law.law->n_parameters(),
-                              law.states.data() + i * law.law->n_state()};
-    double *const          next = trial.states.data() + i * law.law->n_state();
-    flow.square                 = beside;
-    trial.responses[i]          = law.j2 != nullptr ? law.j2->update_with(flow, at, next, wanted) :
-                                                      law.law->update(at, next, wanted);
+    StressLaw::Tangent  full;
+    StressLaw::Tangent *wanted = of_tangent == nullptr ? nullptr : &full;
+    StressLaw::Trial    at{in_space<dim>(strain),
+                        law.parameters.data() + i * law.law->n_parameters(),
+                        law.states.data() + i * law.law->n_state()};
+    at.length          = std::pow(families.nodes().volume(i), 1. / dim);
+    at.element         = families.nodes().partitioner()->local_to_global(i);
+    double *const next = trial.states.data() + i * law.law->n_state();
+    flow.square        = beside;
+    trial.responses[i] = law.j2 != nullptr ? law.j2->update_with(flow, at, next, wanted) :
+                                             steps.update(*law.law, at, next, wanted);
     if (of_tangent != nullptr)
       *of_tangent = in_body<dim>(full);
   }
@@ -346,6 +351,7 @@ namespace PeriDeal
       find_at(values, i, inside, outside);
     });
     u.set_ghost_state(false);
+    steps.throw_faults(*law.law, families.nodes().communicator());
     trial.numbers.update_ghost_values();
     std::copy(values, values + u.locally_owned_size(), trial.displacement.begin());
     trial.known      = true;
@@ -364,7 +370,21 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Correspondence<dim>::find_forces(Vector &y, const Vector &u) const
+  void Correspondence<dim>::find_forces(Vector &y, const Vector &u, const double t) const
+  {
+    steps.now   = t;
+    trial.known = false;
+    if (law.law->may_fail() && u.linfty_norm() == 0.) // as StressCells::find_forces()
+      {
+        y = 0.;
+        return;
+      }
+    sum_forces(y, u);
+  }
+
+
+  template <int dim>
+  void Correspondence<dim>::sum_forces(Vector &y, const Vector &u) const
   {
     find(u);
     u.update_ghost_values();
@@ -451,14 +471,15 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Correspondence<dim>::accept(const Vector &u)
+  double Correspondence<dim>::accept(const Vector &u, const double t)
   {
     if (law.is_linear)
       return 0.;
-    if (!knows(u) || !trial.has_forces)
+    if (!knows(u) || !trial.has_forces || steps.now != t)
       {
         Vector y(trial.forces);
-        find_forces(y, u);
+        steps.now = t;
+        sum_forces(y, u);
       }
     double stored = 0., n_flow = 0.;
     for (unsigned int i = 0; i < shapes.size(); ++i)
@@ -471,8 +492,10 @@ namespace PeriDeal
     bool         flows = false;
     const double dissipated =
       accepted.take(u, trial.forces, stored, n_flow, families.nodes().communicator(), flows);
-    if (flows)
+    const double changes = trial.known && law.states != trial.states ? 1. : 0.;
+    if (flows && trial.known)
       remember();
+    steps.accept(t, Utilities::MPI::max(changes, families.nodes().communicator()) > 0.);
     return dissipated;
   }
 
@@ -530,6 +553,7 @@ namespace PeriDeal
           law.states[n_state * i + s] = number.local_element(i);
       }
     accepted.exchange(archive, keys);
+    steps.exchange(archive);
     if (law.j2 != nullptr)
       exchange_histories(bonds, archive, keys, n_history);
     if (archive.loads())
@@ -560,6 +584,7 @@ namespace PeriDeal
         at.ratio_slope  = flow.ratio_slope;
         n_flow += law.j2 == nullptr || flow.ratio < 1. ? 1. : 0.;
       }
+    steps.throw_faults(*law.law, families.nodes().communicator());
     tangent.any = Utilities::MPI::max(n_flow, families.nodes().communicator()) > 0.;
     if (!tangent.any || law.j2 == nullptr)
       return;

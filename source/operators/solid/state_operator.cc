@@ -108,7 +108,7 @@ namespace PeriDeal
       {
         scratch = 0.;
         if (solid.by_family)
-          solid.by_family->find_forces(thermal_loads, scratch);
+          solid.by_family->find_forces(thermal_loads, scratch, 0.);
         else
           {
             find_tensions(scratch, true);
@@ -181,7 +181,7 @@ namespace PeriDeal
   {
     if (solid.flows())
       {
-        solid.by_family->find_forces(y, u);
+        solid.by_family->find_forces(y, u, t);
         return;
       }
     if (!solid.forces.is_bond_by_bond())
@@ -422,7 +422,7 @@ namespace PeriDeal
   void StateOperator<dim>::accept(const Vector &u, const double t)
   {
     if (solid.flows())
-      this->released_beside.by_law += solid.by_family->accept(u);
+      this->released_beside.by_law += solid.by_family->accept(u, t);
     if (!solid.law.any())
       return;
     solid.law.set_time(t);

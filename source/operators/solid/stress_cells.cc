@@ -5,7 +5,6 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
-#include <perideal/base/user_error.h>
 #include <perideal/mesh/node_keys.h>
 #include <perideal/operators/solid/stress_cells.h>
 
@@ -27,12 +26,11 @@ namespace PeriDeal
     // A body that does not flow is what it is without the projection.
     const bool projects = body.material.law.kind != SolidLaw::linear &&
                           stress_state_of(dim, body.elasticity.plane) != StressState::plane_stress;
-    const double end = body.cracks.end_time;
     return std::make_unique<StressCells>(dofs,
                                          std::move(law),
                                          projects,
                                          cracks,
-                                         end > 0. ? 1e-9 * end : 1.);
+                                         StressSteps::of_scene(body));
   }
 
 
@@ -41,12 +39,12 @@ namespace PeriDeal
                                 PlacedStressLaw<dim>   law,
                                 const bool             projects,
                                 const CutCells<dim>   &cracks,
-                                const double           instant)
+                                const StressSteps     &steps)
     : dofs(dofs)
     , of_points(std::move(law.law))
     , cracks(cracks)
     , first(dofs.get_triangulation().n_active_cells(), 0)
-    , clock{instant}
+    , steps(steps)
     , at{ProjectedStrains<dim>(dofs.get_fe(), projects),
          std::vector<types::global_dof_index>(dofs.get_fe().n_dofs_per_cell()),
          dealii::Vector<double>(dim * dofs.get_fe().n_dofs_per_cell()),
@@ -84,13 +82,6 @@ namespace PeriDeal
     for (unsigned int i = 0; u != nullptr && i < at.u.size(); ++i)
       at.u(i) = (*u)(dim * at.nodes[i / dim] + i % dim);
     StressLaw::Trial trial;
-    trial.instant = clock.instant;
-    if (u != nullptr)
-      {
-        trial.time      = clock.now;
-        trial.step      = clock.now - clock.accepted;
-        trial.increment = clock.n_steps + 1;
-      }
     trial.length           = std::pow(cell->measure(), 1. / dim) / dofs.get_fe().degree;
     trial.element          = cell->global_active_cell_index();
     const double *of_point = all_parameters.data() + first_of(cell) * of_points->n_parameters();
@@ -103,19 +94,11 @@ namespace PeriDeal
         trial.parameters = of_point + q * of_points->n_parameters();
         trial.state      = accepted + q * of_points->n_state();
         trial.point      = q;
-        try
-          {
-            point.response = of_points->update(trial,
-                                               point.state.data(),
-                                               with_tangents ? &point.tangent : nullptr);
-          }
-        catch (const UserError &error)
-          {
-            if (fault.empty())
-              fault = error.message();
-            point.response = {};
-            point.tangent  = 0.;
-          }
+        point.response   = steps.update(*of_points,
+                                      trial,
+                                      point.state.data(),
+                                      with_tangents ? &point.tangent : nullptr,
+                                      u == nullptr);
       }
   }
 
@@ -190,7 +173,7 @@ namespace PeriDeal
                                      const Vector            &u,
                                      const double             t) const
   {
-    clock.now = t;
+    steps.now = t;
     y         = 0.;
     // Solvers ask for the loads in this way. A law of others need not get through a step back to no
     // strain at once.
@@ -231,32 +214,20 @@ namespace PeriDeal
   {
     double dissipated = 0.;
     begun             = true;
-    clock.now         = t;
-    bool is_step      = t > clock.accepted;
+    steps.now         = t;
+    bool changes      = false;
     for_each(u, [&](const Cell &cell, const std::vector<LawPoint> &points) {
       auto next = states.begin() + first_of(cell) * of_points->n_state();
       for (const LawPoint &point : points)
         {
           dissipated += point.weight * point.response.dissipated;
-          is_step = is_step || !std::equal(point.state.begin(), point.state.end(), next);
+          changes = changes || !std::equal(point.state.begin(), point.state.end(), next);
           next    = std::copy(point.state.begin(), point.state.end(), next);
         }
     });
     throw_faults();
-    clock.accepted = t;
-    clock.n_steps += Utilities::MPI::max(is_step ? 1u : 0u, dofs.get_communicator());
+    steps.accept(t, Utilities::MPI::max(changes ? 1U : 0U, dofs.get_communicator()) > 0);
     return Utilities::MPI::sum(dissipated, dofs.get_communicator());
-  }
-
-
-  template <int dim>
-  void StressCells<dim>::throw_faults() const
-  {
-    if (!of_points->may_fail())
-      return;
-    const std::string of_this = std::move(fault);
-    fault.clear();
-    throw_on_all_if_any(dofs.get_communicator(), of_this);
   }
 
 
@@ -281,9 +252,7 @@ namespace PeriDeal
           }
     };
     archive.exchange("begun", begun);
-    archive.exchange("time", clock.accepted);
-    archive.exchange("steps", clock.n_steps);
-    clock.now = clock.accepted;
+    steps.exchange(archive);
     for_each_cell([&](auto value, auto state) { std::copy_n(state, n_values, value); });
     archive.exchange("states of points", values, node_keys(cells));
     for_each_cell([&](auto value, auto state) { std::copy_n(value, n_values, state); });

@@ -167,7 +167,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void YieldingFamilies<dim>::find_forces(Vector &y, const Vector &u) const
+  void YieldingFamilies<dim>::find_forces(Vector &y, const Vector &u, const double) const
   {
     find(u);
     const double *const numbers = trial.numbers.begin();
@@ -280,7 +280,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  double YieldingFamilies<dim>::accept(const Vector &u)
+  double YieldingFamilies<dim>::accept(const Vector &u, const double)
   {
     if (!knows(u) || !trial.has_forces)
       {

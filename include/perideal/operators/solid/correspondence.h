@@ -8,6 +8,7 @@
 #include <perideal/operators/solid/family_forces.h>
 #include <perideal/operators/solid/nodal_tensors.h>
 #include <perideal/operators/solid/step_work.h>
+#include <perideal/operators/solid/stress_steps.h>
 #include <perideal/operators/solid/thermal_strains.h>
 
 #include <memory>
@@ -48,7 +49,8 @@ namespace PeriDeal
 
     /**
      * All have to outlive this object; rows are neither packed nor left out, q is final. Throws
-     * UserError: a yield stress that is not positive. Collective.
+     * UserError: a yield stress that is not positive, what a law of the user throws; all that is
+     * collective throws that (StressSteps). Collective.
      */
     Correspondence(const Families<dim>       &families,
                    const BondEnds<dim>       &ends,
@@ -62,15 +64,10 @@ namespace PeriDeal
       return law.is_linear;
     }
 
-    bool has_tangent() const override
-    {
-      return true;
-    }
-
     void   multiply(Vector &y, const Vector &x) const override;
-    void   find_forces(Vector &y, const Vector &u) const override;
+    void   find_forces(Vector &y, const Vector &u, const double t) const override;
     double energy(const Vector &u) const override;
-    double accept(const Vector &u) override;
+    double accept(const Vector &u, const double t) override;
     void   exchange(Archive &archive, const NodeKeys &keys) override;
     void   linearize(const Vector &u) override;
     void   forget_tangent() override
@@ -154,7 +151,8 @@ namespace PeriDeal
     };
 
     void find(const Vector &u) const;
-    void find_changes(const Vector &x) const; // in the tangent; ghosts are up to date
+    void sum_forces(Vector &y, const Vector &u) const; // find_forces() at the time that is known
+    void find_changes(const Vector &x) const;          // in the tangent; ghosts are up to date
     bool knows(const Vector &u) const;
     void remember();
 
@@ -197,7 +195,8 @@ namespace PeriDeal
       Changes                             changes;                 // du, where the law flows
     } mutable trial;
 
-    StepWork accepted;
+    StepWork    accepted;
+    StressSteps steps;
 
     /** Of a node that flows. */
     struct Flow

@@ -24,19 +24,22 @@ namespace PeriDeal
     virtual bool is_linear() const = 0;
 
     /** K is that of multiply(); else that of the linear bonds. Not collective. */
-    virtual bool has_tangent() const = 0;
+    virtual bool has_tangent() const
+    {
+      return true;
+    }
 
     /** y = K x. Collective. */
     virtual void multiply(Vector &y, const Vector &x) const = 0;
 
-    /** y = -F at u, by thermal strains, too. Collective. */
-    virtual void find_forces(Vector &y, const Vector &u) const = 0;
+    /** y = -F at u and time t, by thermal strains, too. Collective. */
+    virtual void find_forces(Vector &y, const Vector &u, const double t) const = 0;
 
     /** What is stored. Collective. */
     virtual double energy(const Vector &u) const = 0;
 
-    /** Go on from u. Returns what the step has dissipated (StepWork). Collective. */
-    virtual double accept(const Vector &u) = 0;
+    /** Go on from u at time t. Returns what the step has dissipated (StepWork). Collective. */
+    virtual double accept(const Vector &u, const double t) = 0;
 
     /** Collective. */
     virtual void exchange(Archive &archive, const NodeKeys &keys) = 0;

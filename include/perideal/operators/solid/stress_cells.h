@@ -8,9 +8,9 @@
 #include <perideal/operators/parts/element_matrix.h>
 #include <perideal/operators/solid/projected_strains.h>
 #include <perideal/operators/solid/stress_laws.h>
+#include <perideal/operators/solid/stress_steps.h>
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -21,9 +21,8 @@ namespace PeriDeal
    * are those of the last step that was accepted. Ghosts of displacements are up to date. Cells
    * that a crack cuts carry what it leaves of them. Not collective unless stated.
    *
-   * The law is asked about the way from the last state that was accepted to the time for which
-   * forces were found last. What it throws is kept until throw_faults(), and stresses are zero
-   * there: all that is collective calls that, others have to.
+   * The law is asked as StressSteps says, the time of now being that for which forces were found
+   * last: all that is collective throws faults, others have to ask throw_faults().
    */
   template <int dim>
   class StressCells
@@ -47,14 +46,13 @@ namespace PeriDeal
 
     /**
      * @param projects the dilatation (ProjectedStrains)
-     * @param instant  a time that is as good as none
      * @param cracks   like @p dofs to outlive this
      */
     StressCells(const dealii::DoFHandler<dim> &dofs,
                 PlacedStressLaw<dim>           law,
                 const bool                     projects,
                 const CutCells<dim>           &cracks,
-                const double                   instant);
+                const StressSteps             &steps = {});
 
     const StressLaw &law() const
     {
@@ -104,8 +102,11 @@ namespace PeriDeal
     /** The state u is accepted. Returns what was dissipated on the way to it. Collective. */
     double accept(const Vector &u, const double t);
 
-    /** Throw what the law has thrown on any process. Collective. */
-    void throw_faults() const;
+    /** As StressSteps. Collective. */
+    void throw_faults() const
+    {
+      steps.throw_faults(*of_points, dofs.get_communicator());
+    }
 
     /** Collective. */
     void exchange(Archive &archive);
@@ -130,13 +131,7 @@ namespace PeriDeal
     std::vector<double>                    all_parameters, states;
     bool                                   begun = false;
 
-    struct Clock
-    {
-      double       instant, accepted = 0., now = 0.;
-      unsigned int n_steps = 0; // in which something has happened, or time has passed
-    };
-    mutable Clock       clock;
-    mutable std::string fault; // of this process
+    StressSteps steps;
 
     /** The cell that is looked at. */
     struct Looked

@@ -47,7 +47,7 @@ namespace PeriDeal
     /** What families make of u. Collective. */
     void find(const Vector &u) const;
 
-    void find_forces(Vector &y, const Vector &u) const override;
+    void find_forces(Vector &y, const Vector &u, const double = 0.) const override;
 
     /** By hardening, too. Collective. */
     double energy(const Vector &u) const override;
@@ -59,7 +59,7 @@ namespace PeriDeal
     double plastic_work(const Vector &u) const;
 
     /** Where steps are short what it returns is plastic_work(). Collective. */
-    double accept(const Vector &u) override;
+    double accept(const Vector &u, const double = 0.) override;
 
     void exchange(Archive &archive, const NodeKeys &keys) override;
     void linearize(const Vector &u) override;

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#pragma once
+
+#include <perideal/base/archive.h>
+#include <perideal/base/user_error.h>
+#include <perideal/laws/stress_law.h>
+#include <perideal/scene/body_parameters.h>
+
+#include <string>
+#include <utility>
+
+namespace PeriDeal
+{
+  /**
+   * A law of stresses is asked about the step from the last accepted time to that of now. What it
+   * throws is kept until throw_faults(), and the stress is zero there.
+   */
+  struct StressSteps
+  {
+    template <int dim>
+    static StressSteps of_scene(const BodyParameters<dim> &body)
+    {
+      const double end = body.cracks.end_time;
+      StressSteps  steps;
+      steps.instant = end > 0. ? 1e-9 * end : 1.;
+      return steps;
+    }
+
+    /** Of a trial without times. @param at_start as if no step had been taken */
+    StressLaw::Response update(const StressLaw    &law,
+                               StressLaw::Trial    trial,
+                               double             *next,
+                               StressLaw::Tangent *tangent,
+                               const bool          at_start = false) const
+    {
+      trial.instant = instant;
+      if (!at_start)
+        {
+          trial.time      = now;
+          trial.step      = now - accepted;
+          trial.increment = n + 1;
+        }
+      try
+        {
+          return law.update(trial, next, tangent);
+        }
+      catch (const UserError &error)
+        {
+          if (fault.empty())
+            fault = error.message();
+          if (tangent != nullptr)
+            *tangent = 0.;
+          return {};
+        }
+    }
+
+    /** Throw what the law has thrown on any process. Collective. */
+    void throw_faults(const StressLaw &law, const MPI_Comm communicator) const
+    {
+      if (!law.may_fail())
+        return;
+      const std::string of_this = std::move(fault);
+      fault.clear();
+      throw_on_all_if_any(communicator, of_this);
+    }
+
+    /** @param changes a state has changed, on any process */
+    void accept(const double t, const bool changes)
+    {
+      n += changes || t > accepted ? 1 : 0;
+      accepted = now = t;
+    }
+
+    void exchange(Archive &archive)
+    {
+      archive.exchange("time", accepted);
+      archive.exchange("steps", n);
+      now = accepted;
+    }
+
+    double              instant  = 1.; // a time that is as good as none
+    double              accepted = 0.;
+    mutable double      now      = 0.;
+    unsigned int        n = 0; // accepted ones in which something has happened, or time has passed
+    mutable std::string fault; // of this process
+  };
+} // namespace PeriDeal
