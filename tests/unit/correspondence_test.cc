@@ -8,6 +8,7 @@
 
 #include <perideal/base/archive.h>
 #include <perideal/laws/elasticity.h>
+#include <perideal/laws/j2_plasticity.h>
 
 #include <cmath>
 
@@ -243,6 +244,44 @@ namespace
     EXPECT_LT(direction * image, 0.9 * (direction * of_other));
   }
 } // namespace
+
+
+/** What is beside the strain of a point counts as shear: slopes against differences. */
+TEST(Correspondence, shear_beside_that_of_a_point)
+{
+  for (const StressState kind : {StressState::three_dimensional, StressState::plane_stress})
+    {
+      const J2Plasticity        law(kind);
+      const double              G = 1.3, step = 1e-5;
+      const std::vector<double> parameters = law.parameters(Moduli{2., G}, 0.5, 0.1);
+      std::vector<double>       state(law.n_state(), 0.), next(state);
+      StressLaw::Tensor         strain;
+      strain[0][0]  = 0.5;
+      strain[1][1]  = -0.3;
+      strain[0][1]  = 0.1;
+      const auto at = [&](const double square, J2Plasticity::Beside &beside) {
+        beside.square = square;
+        return law.update_with(beside,
+                               {strain, parameters.data(), state.data()},
+                               next.data(),
+                               nullptr);
+      };
+      J2Plasticity::Beside none, beside, above, below;
+      const auto           alone = at(0., none), response = at(0.4, beside);
+      const auto           more = at(0.4 + step, above), less = at(0.4 - step, below);
+      EXPECT_LT(beside.ratio, none.ratio);
+      EXPECT_LT(beside.ratio, 0.5);
+      EXPECT_LT(response.stress.norm(), alone.stress.norm());
+      EXPECT_NEAR((above.ratio - below.ratio) / (2. * step),
+                  beside.ratio_slope,
+                  1e-8 * std::abs(beside.ratio_slope));
+      EXPECT_LT(((more.stress - less.stress) / (2. * step) - beside.stress_slope).norm(),
+                1e-8 * beside.stress_slope.norm());
+      EXPECT_NEAR((more.stored + more.dissipated - less.stored - less.dissipated) / (2. * step),
+                  beside.ratio / (6. * G),
+                  1e-8);
+    }
+}
 
 
 TEST(Correspondence, uniform_strain_2D)
