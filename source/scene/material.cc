@@ -118,7 +118,7 @@ namespace PeriDeal
       " Greater than -1 and less than 0.5; in plane stress and in bars it may be 0.5." + two;
     for (const OrthotropicEntry &of : orthotropic_entries())
       declare(of.name, EntryType::list, of.name == "Material angle" ? "0" : "", of.unit) =
-        of.words + " Numbers or formulas of x, y, z; with `Law = linear` and finite elements.";
+        of.words + " Numbers or formulas of x, y, z; with `Law = linear`, in finite elements and correspondence.";
     entry("Thermal expansion", "0") =
       "Strain per `Temperature change` (section `Elasticity`)" + formula;
     entry("Fracture energy") =

@@ -4,6 +4,7 @@
 
     user_law.py elastic     the linear law in fixed-form Fortran and in C: patches and consoles at rest, in motion; what a call is told
     user_law.py plastic     prm/elasticity/user_law.f90 against `plastic` and a closed form, its tangent against differences
+    user_law.py nodes       at nodes of correspondence peridynamics: against the built-in laws, on 2 processes, resumed, broken
     user_law.py ranks       2 and 4 processes
     user_law.py mistakes    broken libraries: one message each, on 2 processes, too (entries: tests/unit/scene_mistakes_test.cc)
 """
@@ -11,7 +12,7 @@
 import os
 import subprocess
 
-from scene_test import FE, SOURCE_DIR, Comparison, check, check_close, check_less, check_one_message, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
+from scene_test import FE, PD, SOURCE_DIR, Comparison, check, check_close, check_less, check_one_message, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
 
 PLASTIC = os.path.join(SOURCE_DIR, "prm", "elasticity", "user_law.f90")
 BAR = "prm/elasticity/user_law.prm"
@@ -114,10 +115,10 @@ def user(path, properties="1000, 0.3", states=0):
     return {"Material/Law": "user", "Material/User law": path, "Material/User properties": properties, "Material/User states": str(states)}
 
 
-def compare(table, what, run, other, bound, columns=("ux", "uy", "sxx", "sxy", "von_mises")):
-    for k, (found, expected) in enumerate(zip(run.rows(FE), other.rows(FE))):
+def compare(table, what, run, other, bound, columns=("ux", "uy", "sxx", "sxy", "von_mises"), model=FE):
+    for k, (found, expected) in enumerate(zip(run.rows(model), other.rows(model))):
         for column in columns:
-            size = max(abs(row[column]) for row in other.rows(FE))
+            size = max(abs(row[column]) for row in other.rows(model))
             table.add(f"{what}, row {k + 1}, {column}", found[column] / size, expected[column] / size, absolute=bound)
 
 
@@ -355,6 +356,38 @@ def tangent():
 NOTCHED = {"Domain/Cells": "8, 4, 4", "Cracks/Polygons": "1,0.5,-1 ; 1,2,-1 ; 1,2,2 ; 1,0.5,2", "Time/End time": "7", "Output/Probes": "0.5,0.2,0.3 ; 1.5,0.9,0.9", "Solver/Tolerance": "1e-13"}
 
 
+def nodes():
+    folder = temporary_folder()
+    fortran, nan = write_file("elastic.for", ELASTIC, folder), write_file("nan.c", HEAD + "  if (coords[0] > 1.5) stress[0] = NAN;\n}\n", folder)
+    table = Comparison("a UMAT at the nodes of correspondence and the built-in laws")
+    nodal = {"Models": "peridynamics", "Elasticity/Model": "correspondence"}
+    for kind, (dimension, plane) in KINDS.items():
+        console = scene_of(CONSOLE, dimension, solver="newton")
+        settings = {**nodal, **plane, **STEADY, "Domain/Cells": "8, 4, 4" if dimension == 3 else "16, 8"}
+        linear = run_scene(console, {**settings, **LINEAR})
+        compare(table, f"elastic, {kind}", run_scene(console, {**settings, **user(fortran)}), linear, 1e-11, model=PD)
+        if kind == "plane strain":
+            two = run_scene(console, {**settings, **user(fortran)}, ranks=2)
+            compare(table, "2 processes", two, linear, 1e-11, model=PD)
+            moves = {**nodal, **plane, **MOVES, "Domain/Cells": "16, 8", "Elasticity/Solver": "dynamics"}
+            compare(table, "in motion", run_scene(console, {**moves, **user(fortran)}), run_scene(console, {**moves, **LINEAR}), 1e-11, model=PD)
+            for n in (1, 2):
+                run = run_scene(console, {**settings, **user(nan)}, ranks=n, expect_error=True)
+                check_one_message(run.stdout, run.stderr, ("User law", "nan.c", "stress that is no number"), f"no number, {n} process(es)")
+    # Where a strain is uniform nothing is stored beside it, which `plastic` has in its yield stress and a law of the user has not.
+    bar = {**nodal, "Domain/Cells": "6, 3, 3", "Boundary conditions/Symmetry": "", "Peridynamics/Surface correction": "none", "Solver/Tolerance": "1e-12",
+           "Boundary conditions/Displacement": " ; ".join(f"{side}: 0.002*min(t, 10 - t)*x, 0, 0" for side in ("left", "right", "bottom", "top", "back", "front")),
+           "Boundary conditions/Displacement layer": "1", "Output/Probes": "0.9, 0.4, 0.4"}
+    own = run_scene(BAR, {**bar, "Material/User properties": "1000, 0.3, 1, 100, 0"})
+    plastic_bar = {"Material/Law": "plastic", "Material/User law": "", "Material/User properties": "", "Material/User states": "0", **LINEAR,
+                   "Material/Yield stress": "1", "Material/Hardening modulus": "100"}
+    built_in = run_scene(BAR, {**bar, **plastic_bar})
+    compare(table, "beyond yield", own, built_in, 1e-10, ("sxx", "syy", "von_mises"), model=PD)
+    for quantity in ("strain energy", "energy dissipated by the law"):
+        table.add(quantity, own.total(quantity, PD), built_in.total(quantity, PD), relative=1e-9)
+    table.show()
+
+
 def ranks():
     table = Comparison("a notched bar on several processes")
     once = run_scene(BAR, NOTCHED)
@@ -429,4 +462,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(elastic, plastic, ranks, mistakes)
+    run_parts(elastic, plastic, nodes, ranks, mistakes)
