@@ -239,6 +239,10 @@ namespace PeriDeal
       measure_law("softening, before it does",
                   "set Law = softening\nset Tensile strength = 1e3\nset Fracture energy = 1e9\n",
                   "state-based");
+      measure_law("linear, correspondence", "", "correspondence");
+      measure_law("plastic, correspondence, a part of it yields",
+                  "set Law = plastic\nset Yield stress = 0.5\n",
+                  "correspondence");
       for (const LawOfLammps &law :
            {LawOfLammps{"lps", ""}, LawOfLammps{"ves", " 0.5 1"}, LawOfLammps{"eps", " 0.5"}})
         if (const double rate = rate_of_lammps(law, 31, 3., 40); rate > 0.)
