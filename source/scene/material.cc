@@ -74,7 +74,7 @@ namespace PeriDeal
         {"User properties",
          EntryType::list,
          "",
-         "",
+         "of the law",
          "With `Law = user`: the numbers PROPS of the law, separated by commas."},
         {"User states",
          EntryType::whole_number,

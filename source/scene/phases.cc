@@ -318,7 +318,7 @@ namespace PeriDeal
       declare(entry.name, EntryType::list, "", entry.unit) =
         entry.name +
         " of each phase: `name: list of numbers or formulas of x, y, z`, several separated by `;`, as many numbers as section `Material` has. A phase that is not named here has those of section `Material`.";
-    declare("User properties", EntryType::list) =
+    declare("User properties", EntryType::list, "", "of the law") =
       "With `Law = user`: the numbers PROPS of each phase, `name: numbers`, several separated by `;`. The law gets the name of the phase as CMNAME, too. A phase that is not named here has those of section `Material`.";
     parse();
   }
