@@ -40,6 +40,8 @@ namespace PeriDeal
     void find_gradients();
 
     static void make(void *const call);
+    /** Returns how it has ended, other than by coming back; empty: it has. */
+    std::string ask();
 
     const Umat                        umat;
     std::array<unsigned int, 6>       row{};
@@ -197,6 +199,23 @@ namespace PeriDeal
   }
 
 
+  std::string UserStress::Call::ask()
+  {
+    try
+      {
+        return comes_back(make, this) ? "" : "has ended the run (XIT)";
+      }
+    catch (const std::exception &thrown) // of laws in C++
+      {
+        return std::string("has thrown an exception: ") + thrown.what();
+      }
+    catch (...)
+      {
+        return "has thrown an exception";
+      }
+  }
+
+
   UserStress::UserStress(const std::shared_ptr<const UserLibrary> &library,
                          const unsigned int                        dim,
                          const StressState                         kind,
@@ -259,16 +278,19 @@ namespace PeriDeal
           largest = std::max(largest, std::abs(call.tangent[a + n * b]));
           gap     = std::max(gap, std::abs(call.tangent[a + n * b] - call.tangent[b + n * a]));
         }
+    if (largest == 0.)
+      return "leaves the tangent (DDSDDE) zero. Let it be the change of STRESS by DSTRAN";
     if (gap <= alike * largest)
       return "";
     std::ostringstream text;
-    text << "gives a tangent (DDSDDE) that is not symmetric: entries differ from those across the "
-            "diagonal by up to "
-         << gap / largest
-         << " times the largest. The solvers of bodies at rest need a symmetric one: let the law "
-            "give its symmetric part, with which Newton takes more iterations and finds the same, "
-            "or use 'Solver = dynamics' in section 'Elasticity', which asks for it at zero strain "
-            "alone";
+    text
+      << "gives a tangent (DDSDDE) that is not symmetric: entries differ from those across the "
+         "diagonal by up to "
+      << gap / largest
+      << " times the largest. The solvers of bodies at rest need a symmetric one: let the law "
+         "give its symmetric part, with which Newton takes more iterations and finds the same, "
+         "or use 'Solver = dynamics' in section 'Elasticity' with 'Stepper = verlet', which asks for it at "
+         "zero strain alone";
     return text.str();
   }
 
@@ -308,12 +330,11 @@ namespace PeriDeal
         std::fenv_t exceptions; // deal.II stops at operations that the law may do
         feholdexcept(&exceptions);
 #endif
-        const bool is_back = comes_back(Call::make, &call);
+        const std::string ended = call.ask();
 #ifdef DEBUG
         fesetenv(&exceptions);
 #endif
-        const std::string fault = is_back ? fault_of(call, tangent != nullptr) :
-                                            "has ended the run (XIT)";
+        const std::string fault = ended.empty() ? fault_of(call, tangent != nullptr) : ended;
         if (!fault.empty())
           throw_fault(fault, call, trial);
       }

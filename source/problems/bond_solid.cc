@@ -486,7 +486,7 @@ namespace PeriDeal
              "",
            std::string(
              states->brittle() && is_correspondence ?
-               "bonds break at the stretches of 'Model = state-based', but a node of 'correspondence' has all of its stress until it has lost two thirds of its bonds: new cracks have cost 1.2 to 1.8 times what they cost there." :
+               "bonds break at the stretches of 'Model = state-based', but a node of 'correspondence' has all of its stress until its bonds in some direction have lost 65 % of their weight: new cracks have cost 1.2 to 1.8 times what they cost there." :
                ""),
            states->brittle() && !scene.material.law.softens() ? note_on_trapping(scene, family) :
                                                                 "",

@@ -48,10 +48,12 @@ namespace PeriDeal
     {
       SymmetricTensor<2, 3> full;
       Tensor<2, dim>        slopes;
+      const Material::Law  &law = scene.material.law;
       for (unsigned int c = 0; c < dim; ++c)
         {
           double g[dim];
-          if (!exact.gradient(coordinates_of(point).data(), t, c, g))
+          if (law.kind == SolidLaw::user || !law.orthotropy.young.empty() || // has no two moduli
+              !exact.gradient(coordinates_of(point).data(), t, c, g))
             {
               for (unsigned int a = 0; a < 3; ++a)
                 for (unsigned int b = a; b < 3; ++b)

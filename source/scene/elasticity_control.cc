@@ -12,7 +12,7 @@ namespace PeriDeal
     declare(model, "Model", "state-based", {"state-based", "bond-based", "correspondence"}) =
       "Peridynamic solid: state-based (linear peridynamic solid, any Poisson ratio), bond-based (prototype microelastic, whose "
       "Poisson ratio is 1/4, in plane stress 1/3; its stiffness against equal strains in all directions is that of the moduli; see `Micromodulus`), or correspondence (nodes make a stress of their "
-      "displacement gradient, by the laws of stresses that finite elements have: linear, isotropic or orthotropic, and plastic; in 2 and 3 dimensions, with `Models = peridynamics` and small "
+      "displacement gradient, by the laws of stresses that finite elements have: linear, isotropic or orthotropic, plastic, and those of users; in 2 and 3 dimensions, with `Models = peridynamics` and small "
       "displacements; `Horizon ratio = 2` is best).";
     declare(micromodulus, "Micromodulus", "family", {"family", "constant"}) =
       "Of `Model = bond-based`: the stiffness of a bond is divided by the sum over the family of each of its ends as it is (`family`), so that a surface costs little "

@@ -130,7 +130,7 @@ namespace PeriDeal
             "Law",
             "linear",
             {"linear", "viscoelastic", "plastic", "softening", "formula", "user"}) =
-      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `user`: by a program of your own, a UMAT (`User law`), in finite elements.";
+      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `user`: by a program of your own, a UMAT (`User law`), in finite elements and correspondence.";
     entry("Tensile strength") =
       "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
       " The area under stress over opening is Fracture energy.";

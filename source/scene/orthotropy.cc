@@ -168,6 +168,8 @@ namespace PeriDeal
             entry_error(where,
                         "there is no phase '" + name + "' in 'Regions'." +
                           did_you_mean(name, regions.names));
+          if (of_regions[0][found - regions.names.begin()])
+            entry_error(where, "the phase '" + name + "' is named twice.");
           const auto list = formulas(numbers, where + ", phase '" + name + "'");
           if (list.size() != elsewhere.size())
             entry_error(where + ", phase '" + name + "'",
@@ -181,6 +183,19 @@ namespace PeriDeal
       for (unsigned int k = 0; k < elsewhere.size(); ++k)
         properties.emplace_back(elsewhere[k], shared, of_regions[k]);
       return properties;
+    }
+
+
+    /** Lists are of one or three numbers, but for the moduli of Young. */
+    void refuse_two(const Material &material, const Material::Law::Orthotropy &body)
+    {
+      material.refuse(body.angles.size() == 2, "Material angle", "found two, needs three angles.");
+      material.refuse(body.shear.size() == 2,
+                      "Shear moduli",
+                      "found two, needs G12 or G12, G13, G23.");
+      material.refuse(body.poisson.size() == 2,
+                      "Poisson ratios",
+                      "found two, needs nu12 or nu12, nu13, nu23.");
     }
 
 
@@ -290,7 +305,7 @@ namespace PeriDeal
                             1,
                             dim == 3 ? 3 : 1,
                             dim == 3 ? "three angles, or one about z" : "one angle");
-    material.refuse(body.angles.size() == 2, "Material angle", "found two, needs three angles.");
+    refuse_two(material, body);
     // Without effect in the plane.
     body.young.resize(3, body.young.back());
     body.shear.resize(3, body.shear.front());

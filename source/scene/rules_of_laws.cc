@@ -93,6 +93,11 @@ namespace PeriDeal
       refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
              "which knows no 'Temperature change' (section 'Elasticity').");
       body.elasticity.refuse(
+        !body.cracks.cracks.empty() && body.elasticity.contact,
+        "Contact",
+        "is '" + body.elasticity.text("Contact") +
+          "', but what the faces of cracks press on each other with is not known of 'Law = user' (section 'Material'). Use 'false', with which they may run into each other.");
+      body.elasticity.refuse(
         body.elasticity.solver == ElasticSolver::linear,
         "Solver",
         "is 'linear', but 'Law = user' in section 'Material' need not be. Use 'newton', 'conjugate "

@@ -238,7 +238,15 @@ namespace PeriDeal
         way_out = before;
         return false;
       }
-    call(data);
+    try
+      {
+        call(data);
+      }
+    catch (...)
+      {
+        way_out = before;
+        throw;
+      }
     way_out = before;
     return true;
   }

@@ -20,6 +20,7 @@ namespace PeriDeal
       return list;
     };
     const std::vector<std::string>  &names = material.phases.all().names;
+    std::vector<bool>                has_own(names.size(), false);
     std::vector<std::vector<double>> of_phases(
       names.size() + 1,
       numbers(material.text(entry), material.where(entry)));
@@ -31,6 +32,9 @@ namespace PeriDeal
         if (found == names.end())
           entry_error(where,
                       "there is no phase '" + name + "' in 'Regions'." + did_you_mean(name, names));
+        if (has_own[found - names.begin()])
+          entry_error(where, "the phase '" + name + "' is named twice.");
+        has_own[found - names.begin()]       = true;
         of_phases[found - names.begin() + 1] = numbers(text, where + ", phase '" + name + "'");
       }
     return of_phases;

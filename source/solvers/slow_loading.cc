@@ -378,7 +378,13 @@ namespace PeriDeal
     last           = u;
     if (before.any)
       {
-        size = std::max(size, undeformed_residual(op, u, scratch, unbalanced, t));
+        size =
+          std::max(size, undeformed_residual(op, u, scratch, unbalanced, t, options.remembers));
+        if (size == 0.) // nothing loads it but what its law does as time goes on
+          {
+            op.residual(scratch, last, t);
+            size = scratch.l2_norm();
+          }
         // Where forces are linear and loads change in proportion this is the solution.
         const double ratio = (t - now) / (now - before.start);
         u                  = last;

@@ -101,10 +101,14 @@ namespace PeriDeal
                              Vector          &u,
                              Vector          &residual,
                              Vector          &image,
-                             const double     t)
+                             const double     t,
+                             const bool       remembers)
   {
     u = 0.;
-    op.unbalanced(residual, u, t); // the loads
+    if (remembers)
+      op.mechanical_loads(residual, t);
+    else
+      op.unbalanced(residual, u, t);
     op.distribute(u, t);
     op.multiply(image, u);
     residual -= image;
@@ -119,7 +123,7 @@ namespace PeriDeal
     Vector           rhs, image;
     for (Vector *v : {&u, &rhs, &image})
       op.initialize_vector(*v);
-    const double size = undeformed_residual(op, u, rhs, image, t);
+    const double size = undeformed_residual(op, u, rhs, image, t, options.remembers);
     if (op.nonlinear() && size > 0.)
       {
         image = 0.;

@@ -4,7 +4,8 @@
 
     user_law.py elastic     the linear law in fixed-form Fortran and in C: patches and consoles at rest, in motion; what a call is told
     user_law.py plastic     prm/elasticity/user_law.f90 against `plastic` and a closed form, its tangent against differences
-    user_law.py nodes       at nodes of correspondence peridynamics: against the built-in laws, on 2 processes, resumed, broken
+    user_law.py swelling    stress at no strain: a body that nothing else loads, one that is brought back
+    user_law.py nodes       at nodes of correspondence peridynamics: against the built-in laws, on 2 processes, broken (resumed: resume.py)
     user_law.py ranks       2 and 4 processes
     user_law.py mistakes    broken libraries: one message each, on 2 processes, too (entries: tests/unit/scene_mistakes_test.cc)
 """
@@ -356,6 +357,39 @@ def tangent():
 NOTCHED = {"Domain/Cells": "8, 4, 4", "Cracks/Polygons": "1,0.5,-1 ; 1,2,-1 ; 1,2,2 ; 1,0.5,2", "Time/End time": "7", "Output/Probes": "0.5,0.2,0.3 ; 1.5,0.9,0.9", "Solver/Tolerance": "1e-13"}
 
 
+# Swells by 0.01 of each length in a unit of time, without a load.
+SWELLS = HEAD + """  const double swells = 0.01 * (time[0] + *dtime);
+  for (int a = 0; a < n; ++a)
+    stress[a] = 0;
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b)
+      stress[a] += ddsdde[a + n * b] * (stran[b] + dstran[b] - (b < *ndi ? swells : 0));
+}
+"""
+
+
+def swelling():
+    """Bodies that are loaded by nothing but what their law does at no strain."""
+    folder = temporary_folder()
+    law = user(write_file("swells.c", SWELLS, folder), "1", 0)
+    free = {"Boundary conditions/Displacement": "", "Boundary conditions/Traction": "", "Boundary conditions/Symmetry": "left, bottom", "Elasticity/Plane": "stress",
+            "Time/End time": "1", "Time/Time step": "0.5", "Output/Write at": "1"}
+    nodal = {"Models": "peridynamics", "Elasticity/Model": "correspondence"}
+    table = Comparison("bodies that swell")
+    for name, model, settings in (("elements", FE, {}), ("nodes", PD, nodal)):
+        run = run_scene(scene_of(CONSOLE, 2, solver="newton"), {**free, **law, **settings})
+        table.add(f"{name}: ux", run.rows(model, time=1)[0]["ux"], 0.02, relative=1e-8)
+        table.add(f"{name}: sxx", run.rows(model, time=1)[1]["sxx"], 0, absolute=1e-7)
+    # held all around, there and back: what it bears at no displacement is told
+    back = {"Boundary conditions/Displacement": " ; ".join(f"{side}: 0.02*min(t, 10 - t)*x, 0, 0" for side in ("left", "right", "bottom", "top", "back", "front")),
+            "Boundary conditions/Symmetry": "", "Domain/Cells": "1, 1, 1", "Output/Line": "", "Output/Probes": "1, 0.5, 0.5"}
+    run = run_scene(BAR, back)
+    at = run.rows(FE, time=10)[0]
+    check(at["ux"] == 0 and abs(at["sxx"]) > 0.1, f"a stress is left: {at}")
+    table.add("force at no displacement", run.total("force on right in x", FE, time=10), at["sxx"], relative=1e-9)
+    table.show()
+
+
 def nodes():
     folder = temporary_folder()
     fortran, nan = write_file("elastic.for", ELASTIC, folder), write_file("nan.c", HEAD + "  if (coords[0] > 1.5) stress[0] = NAN;\n}\n", folder)
@@ -419,6 +453,7 @@ BROKEN = {
     "columns": (broken("ddsdde[16] = 1;"), 0, ["behind the end of STRESS or DDSDDE"]),
     "unsymmetric": (broken("if (coords[0] > 1.8) ddsdde[1] *= 1.01;"), 0, ["not symmetric", "'Solver = dynamics'"]),
     "short steps": (broken("if (dstran[0] != 0) *pnewdt = 0.25;"), 0, ["0.25 times this one (PNEWDT)", "'Time step'"]),
+    "no tangent": (broken("for (int k = 0; k < n * n; ++k) ddsdde[k] = 0;"), 0, ["leaves the tangent (DDSDDE) zero"]),
     "xit": (broken(FAR + "xit_();"), 0, ["has ended the run (XIT)"]),
 }
 
@@ -454,6 +489,9 @@ def mistakes():
                               ("lacks a routine", library("lacks.so", broken("getvrm_();").replace("void xit_", "void getvrm_(void);\nvoid xit_")), ["cannot be loaded", "getvrm_"]),
                               ("source with a mistake", write_file("wrong.f90", "subroutine umat(stress\nend\n", folder), ["cannot be compiled", "gfortran"])):
         fails(name, user(path), ["'User law'", *words])
+    # what the law says before it ends the run is said once
+    run = run_scene(BAR, {"Material/User states": "3"}, expect_error=True, alone=True)
+    check((run.stdout + run.stderr).count("needs 5 properties") == 1, f"words of the law: {(run.stdout + run.stderr)[-500:]}")
     # check tells the law, and finds a missing library without a run
     status, stdout, _ = run_perideal(["check", scene] + [word for entry, value in {**user(good, "1, 2, 3", 4), **STEADY}.items() for word in ("-s", f"{entry}={value}")])
     check(status == 0 and "good.c, properties: 3, states: 4" in stdout, f"check tells the law: {stdout[-1500:]}")
@@ -462,4 +500,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(elastic, plastic, nodes, ranks, mistakes)
+    run_parts(elastic, plastic, swelling, nodes, ranks, mistakes)

@@ -269,6 +269,7 @@ Elasticity/Solver=linear => 'Solver' | 'Law = user' | 'newton'
 Material/Fracture energy=1 => 'Law' | 'user' | 'Fracture energy'
 Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'user' | 'Temperature change'
 Elasticity/Kinematics=full => 'Law' | 'user' | 'Kinematics = linear'
+Elasticity/Plane=strain & Cracks/Segments=0.2,0.5 ; 0.4,0.5 => 'Contact' | 'Law = user' | 'false'
 )");
   }
 
@@ -303,6 +304,7 @@ Material/Young moduli= => 'Shear moduli' | 'Young moduli' | is empty
 Material/Young modulus=1 => 'Young modulus' | isotropic | 'Young moduli'
 Material/Young moduli=3 => 'Young moduli' | '3' | E1, E2 or E1, E2, E3
 Material/Young moduli=3, t => 'Young moduli' | 't' | x, y, z
+Material/Shear moduli=1, 1 => 'Shear moduli' | two
 Material/Young moduli=3, -1 => 'Young moduli' | E2 | -1 | greater than 0
 Material/Shear moduli= => 'Shear moduli' | G12
 Material/Shear moduli=0 => 'Shear moduli' | G12 | 0 | greater than 0

@@ -41,7 +41,7 @@ namespace PeriDeal
   dealii::SymmetricTensor<4, 3> orthotropic_stiffness(const Material::Law::Orthotropy &body,
                                                       const dealii::Point<dim>        &p);
 
-  /** Of the isotropic body that is nearest to it in all directions (Voigt's mean of C). */
+  /** Voigt's mean of C over all directions, an isotropic body. */
   template <int dim>
   Moduli mean_moduli(const Material::Law::Orthotropy &body, const dealii::Point<dim> &p);
 } // namespace PeriDeal

@@ -21,6 +21,8 @@ namespace PeriDeal
     bool         multigrid      = true; // preconditions the conjugate gradients
     // Of SlowLoading: bonds break in a motion between equilibria; loads are those of any time.
     bool breaks_in_motion = true, divides_steps = true;
+    // The law is not asked for a step back to no displacement, in which forces are no loads.
+    bool remembers = false;
   };
 
 
@@ -74,7 +76,8 @@ namespace PeriDeal
 
   /**
    * The l2 norm of the residual that prescribed displacements and loads at time t leave in a body
-   * that is undeformed but for these, with the stiffness K of the last linearize(). @p u becomes
+   * that is undeformed but for these, with the stiffness K of the last linearize(); of loads those
+   * of thermal strains are left out where it @p remembers (StaticOptions). @p u becomes
    * these displacements, @p residual the residual of the free unknowns, @p image is overwritten.
    * Collective.
    */
@@ -82,7 +85,8 @@ namespace PeriDeal
                              Vector          &u,
                              Vector          &residual,
                              Vector          &image,
-                             const double     t);
+                             const double     t,
+                             const bool       remembers);
 
   /**
    * undeformed_residual(), by which residuals are measured, and the start of the iterations: the

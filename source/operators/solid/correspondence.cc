@@ -374,18 +374,6 @@ namespace PeriDeal
   {
     steps.now   = t;
     trial.known = false;
-    if (law.law->may_fail() && u.linfty_norm() == 0.) // as StressCells::find_forces()
-      {
-        y = 0.;
-        return;
-      }
-    sum_forces(y, u);
-  }
-
-
-  template <int dim>
-  void Correspondence<dim>::sum_forces(Vector &y, const Vector &u) const
-  {
     find(u);
     u.update_ghost_values();
     const double *const values  = u.begin();
@@ -478,8 +466,7 @@ namespace PeriDeal
     if (!knows(u) || !trial.has_forces || steps.now != t)
       {
         Vector y(trial.forces);
-        steps.now = t;
-        sum_forces(y, u);
+        find_forces(y, u, t);
       }
     double stored = 0., n_flow = 0.;
     for (unsigned int i = 0; i < shapes.size(); ++i)

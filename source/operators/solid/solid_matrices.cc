@@ -91,6 +91,30 @@ namespace PeriDeal
     }
 
 
+    /** By which bonds of each node resist extension, ghosts included. Collective. */
+    template <int dim>
+    std::vector<double> extension_stiffnesses(const SolidBonds<dim>     &bonds,
+                                              const BodyParameters<dim> &body)
+    {
+      const Nodes<dim>   &nodes = bonds.families.nodes();
+      std::vector<double> extension(nodes.n_local());
+      if (const auto *const nodal = bonds.correspondence()) // whose law need not have two moduli
+        {
+          Vector shear(nodes.partitioner());
+          for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+            shear.local_element(i) = nodal->shear(i);
+          shear.update_ghost_values();
+          for (unsigned int i = 0; i < nodes.n_local(); ++i)
+            extension[i] = dim * (dim + 2.) * shear.local_element(i);
+        }
+      else
+        for (unsigned int i = 0; i < nodes.n_local(); ++i)
+          extension[i] =
+            bond_law(body.material.moduli(nodes.position(i)), dim, body.elasticity.plane).extension;
+      return extension;
+    }
+
+
     /** A matrix of zeros with these bonds. Collective. */
     template <int dim>
     void make_pattern(const Nodes<dim>                  &nodes,
@@ -133,13 +157,7 @@ namespace PeriDeal
     const Utilities::MPI::Partitioner &unknowns = *diagonal.get_partitioner();
     const NearBonds                    found    = find_near_bonds(bonds);
     make_pattern(nodes, unknowns, found, matrix);
-    const auto stiffness_of = [&](const unsigned int i) {
-      const Moduli moduli = body.material.moduli(nodes.position(i));
-      return bond_law(moduli, dim, body.elasticity.plane).extension;
-    };
-    std::vector<double> extension(nodes.n_local());
-    for (unsigned int i = 0; i < nodes.n_local(); ++i)
-      extension[i] = stiffness_of(i);
+    const std::vector<double> extension = extension_stiffnesses(bonds, body);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         Tensor<2, dim> own;

@@ -29,8 +29,7 @@ namespace PeriDeal
    * a uniform strain is exact whatever the family. What the gradient does not tell of the family,
    * z = du - G_i xi, stores (c_i/2) sum W |z|^2 (Wan et al. 2019): c_i = d (d + 2) mu/q_i is what
    * the ordinary solid of a full family stores of it, q_i = tr M_i/V_i, and mu the shear modulus,
-   * of an orthotropic body that of the isotropic one that is nearest to it (Reuss's mean, the
-   * softer one). A bond pulls at i by
+   * of bodies with other ones Reuss's mean over all directions, the softer one. A bond pulls at i by
    *
    *   W [(P_i + P_j) xi + (c_i + c_j) du - (c_i G_i + c_j G_j) xi],  P_i = V_i sigma_i M_i^-1,
    *
@@ -83,6 +82,12 @@ namespace PeriDeal
 
     /** Stresses of the law and strains sym G of the owned nodes. Collective. */
     NodalTensors<dim> tensors(const Vector &u) const;
+
+    /** mu of an owned node. */
+    double shear(const unsigned int i) const
+    {
+      return shapes[i].shear;
+    }
 
     /** In two dimensions, the stress of an owned node out of the plane, at the last tensors(). */
     double out_of_plane(const unsigned int i) const
@@ -151,8 +156,7 @@ namespace PeriDeal
     };
 
     void find(const Vector &u) const;
-    void sum_forces(Vector &y, const Vector &u) const; // find_forces() at the time that is known
-    void find_changes(const Vector &x) const;          // in the tangent; ghosts are up to date
+    void find_changes(const Vector &x) const; // in the tangent; ghosts are up to date
     bool knows(const Vector &u) const;
     void remember();
 

@@ -15,7 +15,7 @@ namespace PeriDeal
 {
   /**
    * A law of stresses is asked about the step from the last accepted time to that of now. What it
-   * throws is kept until throw_faults(), and the stress is zero there.
+   * throws is kept until throw_faults(); until then it is not asked again, and stresses are zero.
    */
   struct StressSteps
   {
@@ -44,16 +44,16 @@ namespace PeriDeal
         }
       try
         {
-          return law.update(trial, next, tangent);
+          if (fault.empty()) // it may have words of its own for each
+            return law.update(trial, next, tangent);
         }
       catch (const UserError &error)
         {
-          if (fault.empty())
-            fault = error.message();
-          if (tangent != nullptr)
-            *tangent = 0.;
-          return {};
+          fault = error.message();
         }
+      if (tangent != nullptr)
+        *tangent = 0.;
+      return {};
     }
 
     /** Throw what the law has thrown on any process. Collective. */
