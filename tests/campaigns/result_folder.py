@@ -34,9 +34,9 @@ def status_of(folder):
 
 
 def nulls_in(value, path=""):
-    """Where a summary says null, which stands for a number that is none. Components that are free have no given value."""
+    """Where a summary says null, which stands for a number that is none. Components that are free have no given value, a first solution no estimate."""
     if value is None:
-        if not (path.startswith("/values on sides/") and "/displacement/" in path):
+        if not (path.startswith("/values on sides/") and "/displacement/" in path) and path != "/accuracy/steps/0/estimate":
             yield path
     elif isinstance(value, dict):
         for key, part in value.items():
@@ -46,8 +46,15 @@ def nulls_in(value, path=""):
             yield from nulls_in(part, f"{path}/{k}")
 
 
+def _may_be_none(name, row, column):
+    """Points of lines outside the body have no values, exact displacements by formulas without a gradient no stresses (doc/results.md)."""
+    if row["model"] == "exact" and column in ("sxx", "syy", "szz", "sxy", "sxz", "syz", "von_mises"):
+        return True
+    return name == "line.csv" and all(text == "nan" for other, text in row.items() if other not in ("time", "model", "x", "y", "z"))
+
+
 def wrong_numbers(folder):
-    """Numbers in the summary and the tables that are not finite."""
+    """Numbers in the summary and the tables that are not finite, and should be."""
     try:
         read_summary(folder)
     except ValueError as problem:
@@ -65,7 +72,7 @@ def wrong_numbers(folder):
                         finite = math.isfinite(float(text))
                     except (TypeError, ValueError):
                         continue
-                    if not finite:
+                    if not finite and not _may_be_none(name, row, column):
                         yield f"{name}: {column} = {text} in {row}"
                         break
 

@@ -29,7 +29,8 @@ namespace PeriDeal
    * a uniform strain is exact whatever the family. What the gradient does not tell of the family,
    * z = du - G_i xi, stores (c_i/2) sum W |z|^2 (Wan et al. 2019): c_i = d (d + 2) mu/q_i is what
    * the ordinary solid of a full family stores of it, q_i = tr M_i/V_i, and mu the shear modulus,
-   * of bodies with other ones Reuss's mean over all directions, the softer one. A bond pulls at i by
+   * of bodies with other ones Reuss's mean over all directions, the softer one. A bond pulls at i
+   * by
    *
    *   W [(P_i + P_j) xi + (c_i + c_j) du - (c_i G_i + c_j G_j) xi],  P_i = V_i sigma_i M_i^-1,
    *
