@@ -10,7 +10,8 @@ from words import with_unit
 
 MODULI = ("Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio")
 ORTHOTROPIC = ("Young moduli", "Shear moduli", "Poisson ratios", "Material angle")
-ELASTIC = MODULI + ORTHOTROPIC + ("Density", "Thermal expansion", "Fracture energy", "Critical stretch", "Tensile strength",
+OF_USERS = ("User law", "User properties")
+ELASTIC = MODULI + ORTHOTROPIC + OF_USERS + ("Density", "Thermal expansion", "Fracture energy", "Critical stretch", "Tensile strength",
                     "Yield stress", "Hardening modulus")
 DIFFUSING = {"heat": ("Conductivity", "Density", "Heat capacity"),
              "moisture": ("Conductivity", "Saturated concentration", "Density", "Heat capacity"),
@@ -114,7 +115,7 @@ def material_table(run):
     """What each phase is made of; empty where nothing is given."""
     entries = entries_of(run)
     rows = materials(run, entries)
-    decisive = MODULI + ORTHOTROPIC[:1] if run.words.elastic else entries[:1]
+    decisive = MODULI + ORTHOTROPIC[:1] + OF_USERS[:1] if run.words.elastic else entries[:1]
     if not any(values.get(m) for _, _, values in rows for m in decisive):
         return ""
     columns = [entries_as_cells(values, entries) for _, _, values in rows]
