@@ -55,6 +55,7 @@ SCENES = {
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
                ("elasticity/yielding_plate.prm", YIELDING, 0), ("elasticity/yielding_plate.prm", {**YIELDING, **NODAL}, 0), ("elasticity/user_law.prm", STRUCK, 0),
                ("elasticity/user_law.prm", {**STRUCK, **NODAL, "Models": "peridynamics"}, 0), ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", **NODAL}, 0),
+               ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", "Material/Law": "softening", "Material/Tensile strength": "3e7"}, 0),
                ("fracture/colliding_bars.prm", {}, 0), ("fracture/branching_crack.prm", {"Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}, IMPLICIT),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
     "loading": [("elasticity/yielding_ring.prm", {"Domain/Refinements": "2", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/user_law.prm", NOTCHED, IMPLICIT), ("elasticity/user_law.prm", {**NOTCHED, **NODAL, "Models": "peridynamics"}, IMPLICIT), ("elasticity/creeping_plate.prm", {"Domain/Cells": "16, 8", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/yielding_plate.prm", {"Domain/Cells": "16, 16", "Solver/Tolerance": "1e-12"}, IMPLICIT),
