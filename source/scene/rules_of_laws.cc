@@ -32,6 +32,19 @@ namespace PeriDeal
     }
 
 
+    /** What laws of stresses are not for, by refuse(is so, why). */
+    template <int dim, typename Refuse>
+    void refuse_large_changes(const BodyParameters<dim> &body, const Refuse &refuse)
+    {
+      refuse(body.elasticity.has_full_kinematics(),
+             "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");
+      refuse(body.material.breaks(),
+             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
+      refuse(!body.cracks.tips.empty(),
+             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+    }
+
+
     template <int dim>
     void refuse_plastic_body(const BodyParameters<dim> &body,
                              const bool                 by_elements,
@@ -49,12 +62,7 @@ namespace PeriDeal
       refuse(
         body.elasticity.is_bond_based(),
         "a yield stress for shear alone, which 'Model = bond-based' (section 'Elasticity') cannot have. Use 'state-based'.");
-      refuse(body.elasticity.has_full_kinematics(),
-             "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");
-      refuse(body.material.breaks(),
-             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
-      refuse(!body.cracks.tips.empty(),
-             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+      refuse_large_changes(body, refuse);
       body.peridynamics.refuse(
         !by_elements && body.peridynamics.corrects_elastic_bonds(),
         "Surface correction",
@@ -84,12 +92,7 @@ namespace PeriDeal
         (!by_elements && !body.elasticity.is_correspondence()) || coupled,
         "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' with 'Model = correspondence' (section 'Elasticity'). Use these.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
-      refuse(body.elasticity.has_full_kinematics(),
-             "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");
-      refuse(body.material.breaks(),
-             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
-      refuse(!body.cracks.tips.empty(),
-             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+      refuse_large_changes(body, refuse);
       refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
              "which knows no 'Temperature change' (section 'Elasticity').");
       body.elasticity.refuse(

@@ -106,7 +106,8 @@ namespace PeriDeal
       TemporaryFolder()
       {
         std::error_code ignored;
-        std::string     name = (fs::temp_directory_path(ignored) / "perideal_law_XXXXXX").string();
+        std::string     name =
+          (fs::temp_directory_path(ignored) / ("perideal_law_" + std::string(6, 'X'))).string();
         if (mkdtemp(name.data()) != nullptr)
           path = name;
       }

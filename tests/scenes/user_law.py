@@ -315,8 +315,8 @@ def tangent():
     import ctypes
     import numpy as np
     path = os.path.join(temporary_folder(), "law.so")
-    stub = write_file("xit.c", "void xit_(void) {}\n", os.path.dirname(path))
-    subprocess.run(["gfortran", "-shared", "-fPIC", "-O2", "-o", path, PLASTIC, stub], check=True)
+    xit = write_file("xit.c", "void xit_(void) {}\n", os.path.dirname(path))
+    subprocess.run(["gfortran", "-shared", "-fPIC", "-O2", "-o", path, PLASTIC, xit], check=True)
     law = ctypes.CDLL(path)
 
     def number(value):
