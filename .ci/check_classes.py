@@ -58,7 +58,6 @@ LONGER = {
     "source/operators/solid/displacement_conditions.cc": [63],
     "source/operators/solid/elastic_elements.cc": [66],
     "source/operators/solid/least_additions.h": [62],
-    "source/operators/solid/zone_breaking.cc": [80],
     "source/problems/bond_solid.cc": [67],
     "source/problems/element_diffusion.cc": [61],
     "source/problems/solid_results.cc": [67],

@@ -542,6 +542,9 @@ namespace PeriDeal
       std::vector<std::string> notes() const override
       {
         std::vector<std::string> list;
+        if (scene.material.law.softens())
+          list.push_back(
+            "stress in the results of 'coupled' is that of the linear law of its cells, in the zone, too, where bonds that have softened bear less: see 'damage'.");
         if (scene.material.law.kind == SolidLaw::formula)
           list.push_back(
             "stress in the results of 'coupled' is that of the linear law of its cells, in the zone, too, where bonds bear what 'Bond force' (section 'Material') says.");

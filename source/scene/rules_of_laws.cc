@@ -9,14 +9,21 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    void refuse_softening_bonds(const BodyParameters<dim> &body, const bool by_elements)
+    void refuse_softening_bonds(const BodyParameters<dim> &body,
+                                const bool                 by_elements,
+                                const bool                 coupled)
     {
       if (!body.material.law.softens())
         return;
       body.material.refuse(
-        by_elements,
+        by_elements && !coupled,
         "Law",
-        "'softening' is one of bonds, and is for 'Models = peridynamics' alone.");
+        "'softening' is one of bonds, and is for 'Models = peridynamics' and 'coupled'.");
+      body.coupling.refuse(
+        coupled && body.coupling.scheme != CouplingScheme::blending,
+        "Scheme",
+        "found '" + body.coupling.text("Scheme") +
+          "', whose elements go on to hold what bonds that soften let go ('Law = softening' in section 'Material'). Use 'blending'.");
       body.material.refuse(
         !body.cracks.tips.empty(),
         "Law",
@@ -187,7 +194,7 @@ namespace PeriDeal
       kind == SolidLaw::formula && by_elements && !coupled,
       "Law",
       "'formula' is one of bonds, and 'Models' has 'finite elements'. Leave them out.");
-    refuse_softening_bonds(body, by_elements);
+    refuse_softening_bonds(body, by_elements, coupled);
     refuse_plastic_body(body, by_elements, coupled);
     refuse_user_law(body, by_elements, coupled);
     const bool is_warm = body.elasticity.computes_temperature ||

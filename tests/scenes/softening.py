@@ -4,11 +4,12 @@
 
     softening.py beams      largest forces, energies, another step
     softening.py eccentric  a beam that cracks beside its middle, against a measured force
+    softening.py zone       the same beams as finite elements with a zone that follows
     softening.py resume     a run that stops and goes on; 2 processes; full kinematics
     softening.py refusals   entries that do not go together
 """
 
-from scene_test import PD, Comparison, check, check_less, check_message, run_parts, run_scene, scene_text
+from scene_test import COUPLED, PD, Comparison, check, check_less, check_message, run_parts, run_scene, scene_text
 
 BEAM = "prm/fracture/softening_beam.prm"
 THICKNESS = 0.05
@@ -18,10 +19,10 @@ THICKNESS = 0.05
 COHESIVE = {(0.05, "exponential"): 1.237, (0.1, "exponential"): 2.189, (0.05, "linear"): 1.351}
 
 
-def beam(depth, high, **more):
-    """Overrides for a beam of this depth, so many cells high: nodes are where its feet are if 1.25 high - 0.5 is a whole number."""
+def beam(depth, high, odd=0, **more):
+    """Overrides for a beam of this depth, so many cells high: nodes are where its feet are if 1.25 high - 0.5 is a whole number (odd = 1: those at vertices)."""
     h = depth / high
-    n = 2 * round(1.8 * high)
+    n = 2 * round(1.8 * high) + odd
     foot, load = 0.55 * h, max(0.04 * depth, 1.1 * h)
     overrides = {
         "Domain/Lower corner": f"{-0.5 * n * h}, 0", "Domain/Upper corner": f"{0.5 * n * h}, {depth}", "Domain/Cells": f"{n}, {high}",
@@ -31,9 +32,9 @@ def beam(depth, high, **more):
     return overrides
 
 
-def largest_force(run):
+def largest_force(run, model=PD):
     """In kN."""
-    return 1e-3 * THICKNESS * abs(run.model(PD)["largest force"]["value"])
+    return 1e-3 * THICKNESS * abs(run.model(model)["largest force"]["value"])
 
 
 def beams():
@@ -66,6 +67,31 @@ def eccentric():
     check_less(abs(energy["imbalance"]), 1e-3 * energy["work"], "balance of energy")
 
 
+def zone():
+    scene = "prm/fracture/softening_zone.prm"
+    table = Comparison("beams with a zone whose bonds soften, largest force in kN")
+    cubes = "load: free, -8e-5*t ; left foot: 0, 0 ; right foot: free, 0"
+    for depth, curve, more in ((0.05, "exponential", {}), (0.05, "exponential", {"Peridynamics_Horizon_ratio": "4"}), (0.05, "linear", {}),
+                               (0.1, "exponential", {"Boundary conditions_Displacement": cubes})):
+        run = run_scene(scene, beam(depth, 30, odd=1, Material_Softening=curve, **more))
+        table.add(f"depth {depth}, {curve} {more}", largest_force(run, COUPLED), COHESIVE[depth, curve], relative=0.02)
+        energy = run.model(COUPLED)["energy balance"]
+        check_less(abs(energy["imbalance"]), 1e-4 * energy["work"], "balance of energy")
+        check_less(abs(energy["released by joining"]), 1e-2 * energy["work"], "released by joining")
+    # Where sides are left as they are, both models have the same bonds around the notch.
+    coarse = beam(0.05, 18, odd=1)
+    first = run_scene(scene, coarse)
+    alone = run_scene(scene, {**coarse, "Models": PD, "Peridynamics/Surface correction": "none"})
+    table.add("coarser, of peridynamics alone", largest_force(first, COUPLED), largest_force(alone), relative=2e-3)
+    everywhere = run_scene(scene, {**coarse, "Coupling/Zone": "everywhere"})
+    table.add("a zone everywhere", largest_force(everywhere, COUPLED), largest_force(first, COUPLED), relative=2e-3)
+    halved = run_scene(scene, {**coarse, "Time/Time step": "0.0125"})
+    table.add("steps half as long", largest_force(halved, COUPLED), largest_force(first, COUPLED), relative=0.005)
+    two = run_scene(scene, coarse, ranks=2)
+    table.add("on 2 processes", largest_force(two, COUPLED), largest_force(first, COUPLED), relative=1e-5)
+    table.show()
+
+
 def resume():
     coarse = beam(0.05, 18)
     whole = run_scene(BEAM, coarse)
@@ -84,10 +110,11 @@ def refusals():
             ({"Material/Tensile strength": "-1"}, ("Tensile strength",)),
             ({"Material/Critical stretch": "1e-4", "Material/Fracture energy": ""}, ("Critical stretch", "brittle")),
             ({"Elasticity/Breaking": "at rest"}, ("Breaking", "softening")),
-            ({"Models": "finite elements"}, ("Law", "for 'Models = peridynamics' alone")),
+            ({"Models": "finite elements"}, ("Law", "for 'Models = peridynamics' and 'coupled'")),
+            ({"Models": "coupled", "Elasticity/Model": "state-based"}, ("Scheme", "Use 'blending'")),
             ({"Material/Softening": "cubic"}, ("Softening", "linear, bilinear, exponential"))):
         check_message(run_scene(BEAM, overrides, expect_error=True), *words)
 
 
 if __name__ == "__main__":
-    run_parts(beams, eccentric, resume, refusals)
+    run_parts(beams, eccentric, zone, resume, refusals)

@@ -73,7 +73,7 @@ namespace
       pairs_of(given, [](const auto &bond, const auto &, const auto &) { return bond.cut; });
     ASSERT_FALSE(across.empty());
     const Vector u = made.values(bumpy_vector<dim>);
-    made.elements->break_pairs(across, u, 0.);
+    made.elements->break_bonds(broken(across), u, 0.);
     Vector       y    = given.product(u);
     const double size = y.linfty_norm(), within = std::sqrt(1. * dim) * 0.1 * (1. + 1e-9);
     y -= made.product(u);
@@ -177,7 +177,7 @@ namespace
       pairs_of(given, [](const auto &bond, const auto &, const auto &) { return bond.cut; });
     ASSERT_FALSE(across.empty());
     const Vector whole = made.at_rest();
-    made.elements->break_pairs(across, whole, 0.);
+    made.elements->break_bonds(broken(across), whole, 0.);
     const double expected = opening(given, given.at_rest(), level, inside);
     EXPECT_GT(expected, 2. * opening(made, whole, level, inside)) << crack;
     EXPECT_NEAR(opening(made, made.at_rest(), level, inside), expected, within * expected) << crack;
@@ -245,10 +245,10 @@ namespace
       return farthest < 0.11;
     };
     const Vector whole = body.at_rest();
-    body.elements->break_pairs(pairs_of(body,
-                                        [&](const auto &, const auto &a, const auto &b) {
-                                          return is_loose(a) != is_loose(b);
-                                        }),
+    body.elements->break_bonds(broken(pairs_of(body,
+                                               [&](const auto &, const auto &a, const auto &b) {
+                                                 return is_loose(a) != is_loose(b);
+                                               })),
                                whole,
                                0.);
     const Vector u = body.at_rest();

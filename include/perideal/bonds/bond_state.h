@@ -14,6 +14,16 @@
 
 namespace PeriDeal
 {
+  /** What a bond that softens has been through and bears, of both of its ends alike. */
+  struct BondSoftness
+  {
+    static constexpr unsigned int n = 2; // numbers, the history of a bond
+
+    double reached = 0.; // largest measure over limit, or less than 1
+    double lost    = 0.; // of what it bore without damage: 1 - DamageCriterion::integrity()
+  };
+
+
   /**
    * Which of a list of bonds are whole, and why and since when others are not: their one owner. Two
    * bits a bond, by its number in the list; both ends of a bond have numbers of their own and are

@@ -115,43 +115,12 @@ namespace PeriDeal
                                 bonds.ends.n_ends(i, j),
                                 found.over_limit()};
     if (criterion->softens())
-      judge_softening(of_bond);
+      this->judge_softening(of_bond,
+                            bonds.ends.origin(j),
+                            bonds.ends.vector(i, j).norm(),
+                            softness_of(bonds.rows, bond.number));
     else if (found.exceeds())
       overstretched.push_back(of_bond);
-  }
-
-
-  /**
-   * A bond that is stretched farther than ever bears less; one that has softened bears all when it
-   * is pressed, and what it did when it is pulled again.
-   */
-  template <int dim>
-  void BondBreaking<dim>::judge_softening(Overstretched bond)
-  {
-    constexpr double slack        = 1e-3; // of limits
-    const auto       state        = softness_of(bonds.rows, bond.number);
-    const double     most         = std::max(1., state.reached);
-    const bool       grows        = bond.ratio > (1. + slack) * most;
-    const bool       is_pressed   = bond.ratio < -slack;
-    const bool       has_softened = state.reached > 1.;
-    if (!grows && !(has_softened && (is_pressed ? state.lost > 0. : state.lost == 0.)))
-      return;
-    if (!grows && !is_pressed && bond.ratio < 0.)
-      return;
-    bond.ratio     = std::max(bond.ratio, most);
-    bond.integrity = is_pressed ? 1. : integrity(bond, bond.ratio);
-    overstretched.push_back(bond);
-  }
-
-
-  template <int dim>
-  double BondBreaking<dim>::integrity(const Overstretched &bond, const double ratio) const
-  {
-    const unsigned int j = bonds.rows.neighbor(bond.number);
-    return criterion->integrity(bond.node,
-                                bonds.ends.origin(j),
-                                bonds.ends.vector(bond.node, j).norm(),
-                                ratio);
   }
 
 
@@ -451,8 +420,13 @@ namespace PeriDeal
   {
     if (!criterion || !criterion->softens())
       return 1.;
-    const double reached = softness_of(bonds.rows, number).reached;
-    return reached > 1. ? integrity({number, node, node, 0, reached}, reached) : 1.;
+    const double       reached = softness_of(bonds.rows, number).reached;
+    const unsigned int j       = bonds.rows.neighbor(number);
+    return reached > 1. ? criterion->integrity(node,
+                                               bonds.ends.origin(j),
+                                               bonds.ends.vector(node, j).norm(),
+                                               reached) :
+                          1.;
   }
 
 

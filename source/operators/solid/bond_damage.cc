@@ -46,6 +46,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  void BondDamage<dim>::judge_softening(Overstretched       bond,
+                                        const unsigned int  other,
+                                        const double        length,
+                                        const BondSoftness &state)
+  {
+    constexpr double slack        = 1e-3; // of limits
+    const double     most         = std::max(1., state.reached);
+    const bool       grows        = bond.ratio > (1. + slack) * most;
+    const bool       is_pressed   = bond.ratio < -slack;
+    const bool       has_softened = state.reached > 1.;
+    if (!grows && !(has_softened && (is_pressed ? state.lost > 0. : state.lost == 0.)))
+      return;
+    if (!grows && !is_pressed && bond.ratio < 0.)
+      return;
+    bond.ratio     = std::max(bond.ratio, most);
+    bond.integrity = is_pressed ? 1. : criterion->integrity(bond.node, other, length, bond.ratio);
+    overstretched.push_back(bond);
+  }
+
+
+  template <int dim>
   bool BondDamage<dim>::select(const double share)
   {
     double most = 0.;

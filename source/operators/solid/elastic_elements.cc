@@ -94,7 +94,7 @@ namespace PeriDeal
       return hanging.is_hanging(unknown);
     })
   {
-    if (body.material.law.kind != SolidLaw::linear && !cells.stresses)
+    if (LawSteps(body.material.law).any())
       {
         Vector layout(unknowns);
         law = std::make_unique<Law>(Law{NodalLaw(body.material.law, layout), {}, layout, layout});
@@ -482,7 +482,7 @@ namespace PeriDeal
     Boxes      boxes;
     for (const auto &[node, weight] : joining)
       boxes.emplace_back(std::vector<Point<dim>>{positions[node], positions[node]});
-    if (Utilities::MPI::sum(1. * joining.size(), nodes->get_mpi_communicator()) == 0.)
+    if (Utilities::MPI::sum(1. * boxes.size(), nodes->get_mpi_communicator()) == 0.)
       return false;
     const std::vector<unsigned int> rows = zone_bonds->nodes_near(boxes);
     this->released_beside.by_joining += mend_zone(boxes, zone_bonds->reach(), rows, u, [&] {
@@ -507,14 +507,14 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ElasticElements<dim>::break_pairs(const std::vector<NodePair> &pairs,
-                                         const Vector                &u,
-                                         const double                 t)
+  void ElasticElements<dim>::break_bonds(const std::vector<DamagedBond> &list,
+                                         const Vector                   &u,
+                                         const double                    t)
   {
     const WithGhosts ghosts(u);
     breaking->add_released(
-      mend_zone(breaking->parted_by(pairs), 0., breaking->rows_of(pairs), u, [&] {
-        breaking->take(pairs, t);
+      mend_zone(breaking->parted_by(list), 0., breaking->rows_of(list), u, [&] {
+        breaking->bonds.set_rows(breaking->take(list, t), cells.factors);
       }));
     join_stretched(u);
   }
@@ -527,11 +527,11 @@ namespace PeriDeal
   {
     if (!breaking)
       return 0;
-    const WithGhosts            ghosts(u);
-    const std::vector<NodePair> pairs = breaking->find_overstretched(u, share);
-    if (!pairs.empty())
-      break_pairs(pairs, u, t);
-    return pairs.size();
+    const WithGhosts ghosts(u);
+    const auto       list = breaking->find_overstretched(u, share);
+    if (!list.empty())
+      break_bonds(list, u, t);
+    return list.size();
   }
 
 

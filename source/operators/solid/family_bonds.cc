@@ -62,10 +62,11 @@ namespace PeriDeal
           continue;
         const unsigned int j = member.neighbor;
         const double       w = member.kept * member.weight;
-        q += w * this->families.neighbors().bond_vector(node, j).norm_square() /
+        q += (body.material.law.softens() ? member.weight : w) *
+             this->families.neighbors().bond_vector(node, j).norm_square() /
              this->families.nodes().volume(node);
         if (beta > 0. || zone.weight_of(j) > 0.)
-          list.push_back({j, zone.is_broken(node, j) ? 0. : w, member.weight, w == 0.});
+          list.push_back({j, (1. - zone.softness(node, j).lost) * w, member.weight, w == 0.});
       }
     const StateLaw law    = law_of(node); // of the linear solid
     const double   volume = this->families.nodes().volume(node);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <unordered_map>
 
 namespace PeriDeal
@@ -56,6 +57,70 @@ namespace PeriDeal
       cells.visit_stretched(
         Vector(interleaved(*nodes.partitioner(), dim)),
         [&](const Corners &corners) { return open.local_element(corners[0]) == 0.; });
+    }
+
+
+    /** A pair with two numbers. */
+    struct Numbered
+    {
+      double   first, second;
+      NodePair pair;
+
+      template <class BoostArchive>
+      void serialize(BoostArchive &archive, const unsigned int)
+      {
+        archive &first &second &pair;
+      }
+    };
+
+
+    /**
+   * Archive pairs with two numbers each, by the key of their first node and the place of the second
+   * one in its row, which is that of all members of the family: the same on all processes. Where a
+   * body is loaded they are those of all processes, in ascending order.
+   */
+    template <int dim>
+    void exchange_pairs(Archive               &archive,
+                        const std::string     &name,
+                        const NodeKeys        &keys,
+                        const Families<dim>   &families,
+                        std::vector<Numbered> &list)
+    {
+      const auto                                 &layout = *families.nodes().partitioner();
+      std::vector<typename Families<dim>::Member> family;
+      KeyedPairs                                  pairs;
+      for (const auto &[first, second, pair] : list)
+        if (!archive.loads() && layout.in_local_range(pair[0]))
+          {
+            const unsigned int a = layout.global_to_local(pair[0]),
+                               b = layout.global_to_local(pair[1]);
+            families.members_of(a, family);
+            std::uint64_t place = 0;
+            while (family[place].neighbor != b)
+              ++place;
+            pairs.keys.push_back({keys[a], place});
+            pairs.values.insert(pairs.values.end(), {second, first});
+          }
+      archive.exchange(name, pairs, keys);
+      if (!archive.loads())
+        return;
+      std::unordered_map<std::uint64_t, unsigned int> node_of;
+      for (unsigned int i = 0; i < keys.size(); ++i)
+        node_of[keys[i]] = i;
+      std::vector<Numbered> own;
+      for (std::size_t k = 0; k < pairs.keys.size(); ++k)
+        {
+          const unsigned int a = node_of.at(pairs.keys[k][0]);
+          families.members_of(a, family);
+          NodePair pair{layout.local_to_global(a),
+                        layout.local_to_global(family[pairs.keys[k][1]].neighbor)};
+          std::sort(pair.begin(), pair.end());
+          own.push_back({pairs.values[2 * k + 1], pairs.values[2 * k], pair});
+        }
+      list = gather(own, families.nodes().communicator());
+      std::sort(list.begin(), list.end(), [](const auto &a, const auto &b) {
+        return std::tie(a.first, a.second, a.pair) < std::tie(b.first, b.second, b.pair);
+      });
     }
   } // namespace
 
@@ -104,7 +169,7 @@ namespace PeriDeal
         double stretch = change / xi.norm_square();
         if (!thermal.empty())
           stretch -= 0.5 * (thermal[i] + thermal[j]);
-        take(i, j, criterion->measure(i, j, stretch, 1.));
+        take(i, j, xi, criterion->measure(i, j, stretch, 1.));
       });
   }
 
@@ -130,25 +195,37 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<NodePair> ZoneBreaking<dim>::find_overstretched(const Vector &u, const double share)
+  std::vector<DamagedBond> ZoneBreaking<dim>::find_overstretched(const Vector &u,
+                                                                 const double  share)
   {
     if (!criterion)
       return {};
     const auto &layout = *nodes.partitioner();
-    const auto  add    = [&](const auto i, const auto j, const BondMeasure &found) {
-      if (!found.exceeds() || !zone.may_break(i, j))
-        return;
-      const bool ascends = layout.local_to_global(i) < layout.local_to_global(j);
-      overstretched.push_back({0, ascends ? i : j, ascends ? j : i, 2, found.over_limit()});
-    };
+    const auto  add =
+      [&](const auto i, const auto j, const Tensor<1, dim> &xi, const BondMeasure &found) {
+        const BondSoftness before = criterion->softens() ? zone.softness(i, j) : BondSoftness();
+        if (!(found.exceeds() || before.reached > 1.) || !zone.may_break(i, j))
+          return;
+        const bool ascends = layout.local_to_global(i) < layout.local_to_global(j);
+        const typename BondDamage<dim>::Overstretched bond{0,
+                                                           ascends ? i : j,
+                                                           ascends ? j : i,
+                                                           2,
+                                                           found.over_limit()};
+        if (criterion->softens())
+          this->judge_softening(bond, bond.neighbor, xi.norm(), before);
+        else
+          overstretched.push_back(bond);
+      };
     this->find_all([&] { visit_measures(u, add); }, [&](auto &paths) { add_tensions(paths, u); });
-    if (!this->select(share))
+    if (!this->select(criterion->softens() ? 0. : share))
       return {};
-    std::vector<NodePair> own;
+    std::vector<DamagedBond> own;
     for (const auto &bond : overstretched)
-      own.push_back({layout.local_to_global(bond.node), layout.local_to_global(bond.neighbor)});
-    std::vector<NodePair> all = gather(own, nodes.communicator());
-    std::sort(all.begin(), all.end());
+      own.push_back({{layout.local_to_global(bond.node), layout.local_to_global(bond.neighbor)},
+                     {bond.ratio, 1. - bond.integrity}});
+    std::vector<DamagedBond> all = gather(own, nodes.communicator());
+    std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.pair < b.pair; });
     return all;
   }
 
@@ -161,9 +238,11 @@ namespace PeriDeal
     double most = 0.;
     u.update_ghost_values();
     this->turn_paths([&](auto &paths) { add_tensions(paths, u); });
-    visit_measures(u, [&](const auto i, const auto j, const BondMeasure &found) {
-      if (found.exceeds(most) && zone.may_break(i, j))
-        most = found.over_limit();
+    visit_measures(u, [&](const auto i, const auto j, const auto &, const BondMeasure &found) {
+      if (!found.exceeds(most) || !zone.may_break(i, j))
+        return;
+      const double before = std::max(1., zone.softness(i, j).reached);
+      most                = std::max(most, found.over_limit() / before);
     });
     if (share_of_zone > 0.)
       cells.visit_stretched(u, [&](const std::array<unsigned int, n_corners> &corners) {
@@ -177,11 +256,11 @@ namespace PeriDeal
 
   template <int dim>
   std::vector<BoundingBox<dim>> ZoneBreaking<dim>::parted_by(
-    const std::vector<NodePair> &pairs) const
+    const std::vector<DamagedBond> &list) const
   {
     std::vector<BoundingBox<dim>> boxes;
-    for (const NodePair &pair : pairs)
-      if (const auto a = known(pair[0]), b = known(pair[1]); a && b)
+    for (const auto &[pair, now] : list)
+      if (const auto a = known(pair[0]), b = known(pair[1]); a && b && now.lost == 1.)
         {
           const Point<dim> &p = nodes.position(*a), &q = nodes.position(*b);
           bool              is_short = true;
@@ -195,11 +274,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::vector<unsigned int> ZoneBreaking<dim>::rows_of(const std::vector<NodePair> &pairs) const
+  std::vector<unsigned int> ZoneBreaking<dim>::rows_of(const std::vector<DamagedBond> &list) const
   {
     std::vector<unsigned int> ends;
-    for (const NodePair &pair : pairs)
-      for (const auto node : pair)
+    for (const DamagedBond &bond : list)
+      for (const auto node : bond.pair)
         if (const auto end = known(node))
           ends.push_back(*end);
     std::sort(ends.begin(), ends.end());
@@ -209,21 +288,31 @@ namespace PeriDeal
 
 
   template <int dim>
-  void ZoneBreaking<dim>::take(const std::vector<NodePair> &pairs, const double t)
+  std::vector<unsigned int> ZoneBreaking<dim>::take(const std::vector<DamagedBond> &list,
+                                                    const double                    t)
   {
-    for (const NodePair &pair : pairs)
+    std::vector<unsigned int> softer;
+    for (const auto &[pair, now] : list)
       {
-        broken.push_back({pair, t});
-        ++so_far.n_broken;
+        const bool breaks = now.lost == 1.;
+        if (breaks)
+          {
+            broken.push_back({pair, t});
+            ++so_far.n_broken;
+          }
         const auto a = known(pair[0]), b = known(pair[1]);
         if (!a || !b)
           continue;
-        zone.mark_broken(*a, *b);
-        if (*a < nodes.n_owned())
-          bonds.release(*a, *b);
-        if (*b < nodes.n_owned())
-          bonds.release(*b, *a);
+        zone.set_softness(*a, *b, now);
+        for (const auto &[node, other] : {std::make_pair(*a, *b), std::make_pair(*b, *a)})
+          if (node < nodes.n_owned() && breaks)
+            bonds.release(node, other);
+          else if (node < nodes.n_owned())
+            softer.push_back(node);
       }
+    std::sort(softer.begin(), softer.end());
+    softer.erase(std::unique(softer.begin(), softer.end()), softer.end());
+    return softer;
   }
 
 
@@ -352,11 +441,17 @@ namespace PeriDeal
   {
     std::vector<double>                         result(nodes.n_owned());
     std::vector<typename Families<dim>::Member> family;
+    // Pressed or not.
+    const auto lost_by = [this](const unsigned int i, const unsigned int j, const double length) {
+      const double reached = zone.softness(i, j).reached;
+      return reached > 1. ? 1. - criterion->integrity(i, j, length, reached) : 0.;
+    };
     for (const unsigned int i : bonds.nodes())
       {
         double lost = 0., all = 0.;
-        bonds.for_each(i, [&](const auto &bond, const auto &) {
-          lost += bond.strength == 0. ? nodes.volume(bond.neighbor) : 0.;
+        bonds.for_each(i, [&](const auto &bond, const auto &xi) {
+          lost += (bond.strength == 0. ? 1. : lost_by(i, bond.neighbor, xi.norm())) *
+                  nodes.volume(bond.neighbor);
         });
         if (lost == 0.)
           continue;
@@ -396,8 +491,6 @@ namespace PeriDeal
                                    const std::function<void()> &at_first)
   {
     std::size_t &n_first = kept_zone.n_broken;
-    // Pairs by the key of their first node and the place of the second one in its row, which is
-    // that of all members of the family: the same on all processes.
     this->exchange_history(archive);
     unsigned long long n_kept = n_first;
     archive.exchange("broken at first", n_kept);
@@ -415,50 +508,27 @@ namespace PeriDeal
         set_limits_of_cells();
       }
 
-    std::vector<typename Families<dim>::Member> family;
-    KeyedPairs                                  pairs;
-    for (std::size_t k = 0; k < broken.size() && !archive.loads(); ++k)
-      if (nodes.partitioner()->in_local_range(broken[k].pair[0]))
-        {
-          const unsigned int a = *known(broken[k].pair[0]), b = *known(broken[k].pair[1]);
-          zone.families_of_bonds().members_of(a, family);
-          std::uint64_t place = 0;
-          while (family[place].neighbor != b)
-            ++place;
-          pairs.keys.push_back({keys[a], place});
-          pairs.values.insert(pairs.values.end(), {broken[k].time, static_cast<double>(k)});
-        }
-    archive.exchange("broken pairs", pairs, keys);
+    std::vector<Numbered> all, softened; // numbers: order, time; lost, reached
+    for (std::size_t k = 0; k < broken.size(); ++k)
+      all.push_back({static_cast<double>(k), broken[k].time, broken[k].pair});
+    exchange_pairs(archive, "broken pairs", keys, this->families, all);
+    zone.for_each_damaged([&](const auto a, const auto b, const BondSoftness &now) {
+      NodePair pair{nodes.partitioner()->local_to_global(a),
+                    nodes.partitioner()->local_to_global(b)};
+      std::sort(pair.begin(), pair.end());
+      if (now.lost < 1.)
+        softened.push_back({now.lost, now.reached, pair});
+    });
+    if (criterion && criterion->softens())
+      exchange_pairs(archive, "softened pairs", keys, this->families, softened);
     if (!archive.loads())
       return;
-
-    std::unordered_map<std::uint64_t, unsigned int> node_of;
-    for (unsigned int i = 0; i < keys.size(); ++i)
-      node_of[keys[i]] = i;
-    using Numbered = std::array<double, 4>; // order, time, both nodes
-    std::vector<Numbered> own;
-    for (std::size_t k = 0; k < pairs.keys.size(); ++k)
-      {
-        const unsigned int a = node_of.at(pairs.keys[k][0]);
-        zone.families_of_bonds().members_of(a, family);
-        NodePair pair{nodes.partitioner()->local_to_global(a),
-                      nodes.partitioner()->local_to_global(family[pairs.keys[k][1]].neighbor)};
-        std::sort(pair.begin(), pair.end());
-        own.push_back({pairs.values[2 * k + 1],
-                       pairs.values[2 * k],
-                       static_cast<double>(pair[0]),
-                       static_cast<double>(pair[1])});
-      }
-    std::vector<Numbered> all = gather(own, nodes.communicator());
-    std::sort(all.begin(), all.end());
     now.update_ghost_values();
     at_first_zone.update_ghost_values();
     const unsigned long long n_broken  = so_far.n_broken;
     const auto               take_from = [&](const std::size_t first, const std::size_t last) {
       for (std::size_t k = first; k < last; ++k)
-        take({{static_cast<types::global_dof_index>(all[k][2]),
-               static_cast<types::global_dof_index>(all[k][3])}},
-             all[k][1]);
+        take({{all[k].pair, {0., 1.}}}, all[k].second);
     };
     const auto join_all = [&](const Vector &weights) {
       std::vector<Joining> list;
@@ -473,6 +543,8 @@ namespace PeriDeal
     at_first();
     join_all(now);
     take_from(n_first, all.size());
+    for (const Numbered &bond : softened)
+      take({{bond.pair, {bond.second, bond.first}}}, 0.);
     so_far.n_broken = n_broken;
     n_followed      = broken.size();
   }

@@ -5,11 +5,12 @@
 
 #include <deal.II/dofs/dof_handler.h>
 
+#include <perideal/bonds/bond_state.h>
 #include <perideal/bonds/families.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <unordered_set>
+#include <unordered_map>
 #include <vector>
 
 namespace PeriDeal
@@ -45,20 +46,31 @@ namespace PeriDeal
     /** Nor what the bond between an owned node and another one parts. */
     virtual bool may_break(const unsigned int node, const unsigned int neighbor) const = 0;
 
-    /** The bond between two nodes known here has broken for good. */
-    void mark_broken(const unsigned int a, const unsigned int b)
+    /** What the bond between two nodes known here bears from now on; broken: it has lost all. */
+    void set_softness(const unsigned int a, const unsigned int b, const BondSoftness &now)
     {
-      broken.insert(key(a, b));
+      damaged[key(a, b)] = now;
+    }
+
+    BondSoftness softness(const unsigned int a, const unsigned int b) const
+    {
+      if (damaged.empty())
+        return {};
+      const auto found = damaged.find(key(a, b));
+      return found == damaged.end() ? BondSoftness() : found->second;
+    }
+
+    /** Call visit(a, b, softness) for these bonds, in any order. */
+    template <typename Visit>
+    void for_each_damaged(const Visit &visit) const
+    {
+      for (const auto &[nodes, now] : damaged)
+        visit(static_cast<unsigned int>(nodes >> 32), static_cast<unsigned int>(nodes), now);
     }
 
     bool is_broken(const unsigned int a, const unsigned int b) const
     {
-      return any_broken() && broken.count(key(a, b)) > 0;
-    }
-
-    bool any_broken() const
-    {
-      return !broken.empty();
+      return softness(a, b).lost == 1.;
     }
 
     /** A bond between two vertices of the cell has broken: what parts these cuts an edge of it. */
@@ -68,7 +80,7 @@ namespace PeriDeal
         return families_of_bonds().nodes().partitioner()->global_to_local(
           cell->vertex_dof_index(v, 0));
       };
-      for (unsigned int v = 0; v < cell->n_vertices() && any_broken(); ++v)
+      for (unsigned int v = 0; v < cell->n_vertices() && !damaged.empty(); ++v)
         for (unsigned int w = v + 1; w < cell->n_vertices(); ++w)
           if (is_broken(node(v), node(w)))
             return true;
@@ -84,7 +96,7 @@ namespace PeriDeal
   protected:
     std::size_t memory_of_marks() const
     {
-      return broken.size() * 3 * sizeof(std::uint64_t);
+      return damaged.size() * 5 * sizeof(std::uint64_t);
     }
 
   private:
@@ -93,6 +105,6 @@ namespace PeriDeal
       return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
     }
 
-    std::unordered_set<std::uint64_t> broken; // by local numbers of both ends
+    std::unordered_map<std::uint64_t, BondSoftness> damaged; // by local numbers of both ends
   };
 } // namespace PeriDeal

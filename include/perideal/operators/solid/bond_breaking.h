@@ -125,8 +125,6 @@ namespace PeriDeal
                         const unsigned int    i,
                         const SolidBond<dim> &bond) const; // e times W x
     void        judge(const double *u, const unsigned int i, const SolidBond<dim> &bond);
-    void        judge_softening(Overstretched bond);
-    double      integrity(const Overstretched &bond, const double ratio) const;
     double      left_of(const unsigned int node, const std::size_t number) const;
     void        take_softness();
     void        soften_dependent(const unsigned int node);

@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <perideal/base/types.h>
+#include <perideal/bonds/bond_state.h>
 #include <perideal/operators/solid/break_history.h>
 #include <perideal/operators/solid/damage_criterion.h>
 #include <perideal/scene/body_parameters.h>
@@ -77,6 +78,18 @@ namespace PeriDeal
     BondDamage(const Families<dim>                          &families,
                const BodyParameters<dim>                    &body,
                std::function<CrossingEnergy(unsigned int)> &&crossing_energy);
+
+    /**
+     * Add a bond that softens to BondDamage::overstretched where what it bears changes: one that
+     * is stretched farther than ever bears less; one that has softened bears all when it is
+     * pressed, and what it did when it is pulled again.
+     *
+     * @param bond its integrity is set here @param other the neighbour or the origin of its image
+     */
+    void judge_softening(Overstretched       bond,
+                         const unsigned int  other,
+                         const double        length,
+                         const BondSoftness &state);
 
     /**
      * Leave what breaks now in BondDamage::overstretched, and keep the places. Returns whether

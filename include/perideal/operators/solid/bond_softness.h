@@ -7,16 +7,6 @@
 
 namespace PeriDeal
 {
-  /** What a bond that softens has been through and bears, of both of its ends alike. */
-  struct BondSoftness
-  {
-    static constexpr unsigned int n = 2; // numbers, the history of a bond
-
-    double reached; // largest measure over limit, or less than 1
-    double lost;    // of what it bore without damage: 1 - DamageCriterion::integrity()
-  };
-
-
   template <int dim>
   BondSoftness softness_of(const BondTable<dim> &bonds, const std::size_t number)
   {

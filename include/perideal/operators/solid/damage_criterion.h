@@ -58,8 +58,8 @@ namespace PeriDeal
 
   /**
    * When a bond of a solid breaks for good, or begins to soften: its measure is above its limit.
-   * The same for peridynamics alone (BondBreaking) and for zones beside elements (ZoneBreaking), in
-   * which bonds break at once. Not collective.
+   * The same for peridynamics alone (BondBreaking) and for zones beside elements (ZoneBreaking).
+   * Not collective.
    */
   template <int dim>
   class DamageCriterion

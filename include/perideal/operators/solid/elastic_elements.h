@@ -103,8 +103,8 @@ namespace PeriDeal
       return breaking ? breaking->stretch_over_critical(u) : 0.;
     }
 
-    /** Break these bonds of the zone, named alike by all processes, at the state u. Collective. */
-    void break_pairs(const std::vector<NodePair> &pairs, const Vector &u, const double t);
+    /** Damage these bonds of the zone, named alike by all processes, at the state u. Collective. */
+    void break_bonds(const std::vector<DamagedBond> &list, const Vector &u, const double t);
 
     std::pair<unsigned long long, std::string> stretched_outside(const Vector &u) const override
     {

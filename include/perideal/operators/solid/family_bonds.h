@@ -16,9 +16,10 @@ namespace PeriDeal
    *   k_i = beta_i b/q_i,   a_i = beta_i c d/(V_i q_i^2),
    *
    * the symbols as in StateOperator, beta the weight of peridynamics (WeightedCoupling): where it
-   * is 1, the same forces, and the same critical stretch. Broken bonds are left out of the sums,
-   * while q_i stays that of the body before, with what its cracks have left. Bonds of a node are
-   * those with a family of which at least one end has a weight.
+   * is 1, the same forces, and the same critical stretch. Broken bonds are left out of the sums and
+   * softened ones count by what they bear, while q_i stays that of the body before, with what its
+   * cracks have left (where bonds soften, without its cracks). Bonds of a node are those
+   * with a family of which at least one end has a weight.
    */
   template <int dim>
   class FamilyBonds : public ZoneBonds<dim>

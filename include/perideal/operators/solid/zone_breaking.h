@@ -19,16 +19,33 @@
 
 namespace PeriDeal
 {
+  /** A bond by the global numbers of its nodes, which ascend, and what it bears from now on. */
+  struct DamagedBond
+  {
+    NodePair     pair;
+    BondSoftness now;
+
+    template <class BoostArchive>
+    void serialize(BoostArchive &archive, const unsigned int)
+    {
+      archive &pair &now.reached &now.lost;
+    }
+  };
+
+
   /**
-   * Bonds of a coupled solid that break for good, and a zone that follows (`Zone = follow`).
+   * Bonds of a coupled solid that break for good or soften, and a zone that follows (`Zone =
+   * follow`).
    *
-   * A bond breaks by its stretch (xi . (u_j - u_i))/x^2 - alpha dT, dT the mean of its ends
-   * (DamageCriterion), where the zone lets it (BreakableZone::may_break()). In an exchange a cell
-   * between whose vertices a bond has broken keeps nothing (BreakableZone::parts()).
+   * A bond breaks or softens by its stretch (xi . (u_j - u_i))/x^2 - alpha dT, dT the mean of its
+   * ends (DamageCriterion), where the zone lets it (BreakableZone::may_break()). In an exchange a
+   * cell between whose vertices a bond has broken keeps nothing (BreakableZone::parts()); bonds
+   * soften in a blending alone, in whose zone nothing is left of elements.
    *
    * The zone grows around the centre of a cell whose largest principal strain, thermal strain taken
-   * off, has reached a share of the critical stretch, and around the ends of broken bonds: in an
-   * exchange by the nodes within one horizon, in a blending as FamilyZone says. All functions are
+   * off, has reached a share of the critical stretch (that at which bonds begin to soften), and
+   * around the ends of broken bonds: in an exchange by the nodes within one horizon, in a blending
+   * as FamilyZone says. All functions are
    * collective unless stated, and leave the same on all processes.
    */
   template <int dim>
@@ -60,9 +77,10 @@ namespace PeriDeal
 
     /**
      * The bonds that are stretched too far at u, those with at least a share of the largest stretch
-     * over critical stretch. Ghosts of u are up to date.
+     * over critical stretch; of those that soften all whose stiffness changes. In ascending order
+     * of their nodes. Ghosts of u are up to date.
      */
-    std::vector<NodePair> find_overstretched(const Vector &u, const double share);
+    std::vector<DamagedBond> find_overstretched(const Vector &u, const double share);
 
     /**
      * As ElasticOperator::stretch_over_critical(); cells that are stretched so much that bonds are
@@ -70,14 +88,17 @@ namespace PeriDeal
      */
     double stretch_over_critical(const Vector &u);
 
-    /** Of those the boxes around bonds between vertices of a cell, whose cells are parted. */
-    std::vector<dealii::BoundingBox<dim>> parted_by(const std::vector<NodePair> &broken) const;
+    /** Of those that break the boxes around bonds between vertices of a cell, which is parted. */
+    std::vector<dealii::BoundingBox<dim>> parted_by(const std::vector<DamagedBond> &list) const;
 
     /** The owned nodes whose forces change with them, ascending. Not collective. */
-    std::vector<unsigned int> rows_of(const std::vector<NodePair> &broken) const;
+    std::vector<unsigned int> rows_of(const std::vector<DamagedBond> &list) const;
 
-    /** They break for good at time t. Not collective. */
-    void take(const std::vector<NodePair> &broken, const double t);
+    /**
+     * They break for good or soften at time t. Returns the owned nodes whose rows are to be set,
+     * those of bonds that soften. Not collective.
+     */
+    std::vector<unsigned int> take(const std::vector<DamagedBond> &list, const double t);
 
     /**
      * Around what the zone is to grow at u, all or none of it in vain: centres of stretched cells
@@ -141,7 +162,7 @@ namespace PeriDeal
 
     void add_tensions(CrackPaths<dim> &paths, const Vector &u) const;
 
-    /** take(i, j, measure) for the whole bonds that start at owned nodes. */
+    /** take(i, j, xi, measure) for the whole bonds that start at owned nodes. */
     template <typename Take>
     void visit_measures(const Vector &u, const Take &take) const;
 
