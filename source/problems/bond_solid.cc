@@ -494,18 +494,26 @@ namespace PeriDeal
            note_on_critical_stretch()})
           if (!note.empty())
             list.push_back(note);
-        if (dim == 2 && scene.material.law.kind == SolidLaw::formula &&
-            scene.elasticity.plane == PlaneState::strain)
+        if (dim == 2 && has_forces_of_its_own() && scene.elasticity.plane == PlaneState::strain)
           list.push_back(
-            "the stress out of the plane is that of the linear law; 'Bond force' in section 'Material' says nothing of it.");
+            "the stress out of the plane is that of the linear law; '" +
+            std::string(scene.material.law.kind == SolidLaw::formula ? "Bond force" : "User law") +
+            "' in section 'Material' says nothing of it.");
         return list;
       }
 
     private:
+      /** What bonds bear is not that of the linear law, nor what they store. */
+      bool has_forces_of_its_own() const
+      {
+        const SolidLaw kind = scene.material.law.kind;
+        return kind == SolidLaw::formula || kind == SolidLaw::user_bonds;
+      }
+
       std::string note_on_critical_stretch() const
       {
         if (!states->brittle() || scene.material.fracture_energy || scene.material.scatter ||
-            scene.material.law.kind == SolidLaw::formula || !scene.domain.has_lattice() ||
+            has_forces_of_its_own() || !scene.domain.has_lattice() ||
             states->bonds().families.nodes().n_owned() == 0)
           return {};
         const auto [energy, of_ball] = states->breaking().energies_of_first();

@@ -562,7 +562,8 @@ namespace PeriDeal
       balance["start"]  = energy.start;
       add("work", "work of loads and supports", energy.work);
       if (scene.material.law.kind == SolidLaw::viscoelastic ||
-          scene.material.law.kind == SolidLaw::user || scene.material.law.yields())
+          scene.material.law.kind == SolidLaw::user ||
+          scene.material.law.kind == SolidLaw::user_bonds || scene.material.law.yields())
         add("dissipated by the law", "energy dissipated by the law", op().released().by_law);
       if (op().may_release_energy())
         {

@@ -70,17 +70,17 @@ namespace PeriDeal
          EntryType::text,
          "",
          "",
-         "With `Law = user`: a shared library with a `umat_` (Abaqus' arguments, small strains), or its source in Fortran or C, which is compiled by gfortran or cc (FC, CC). Its path, or that beside the scene. It has the moduli, too."},
+         "With `Law = user`: a shared library, or its source in Fortran or C, which is compiled by gfortran or cc (FC, CC); its path, or that beside the scene. For finite elements and `Model = correspondence` it has a `umat_` (Abaqus' arguments, small strains), with the moduli, too. For `state-based` and `bond-based` bonds it has a `perideal_bond_law`, by the header perideal_bond_law.h, and moduli are those of the scene."},
         {"User properties",
          EntryType::list,
          "",
          "of the law",
-         "With `Law = user`: the numbers PROPS of the law, separated by commas."},
+         "With `Law = user`: the numbers of the law (PROPS), separated by commas."},
         {"User states",
          EntryType::whole_number,
          "0",
          "1",
-         "With `Law = user`: how many numbers STATEV the law keeps at a point. Fields `state_1`, `state_2`, ... show them."},
+         "With `Law = user`: how many numbers the law keeps at a point (STATEV), which fields `state_1`, `state_2`, ... show, or of a bond."},
         {"Interfaces",
          EntryType::list,
          "",
@@ -118,7 +118,8 @@ namespace PeriDeal
       " Greater than -1 and less than 0.5; in plane stress and in bars it may be 0.5." + two;
     for (const OrthotropicEntry &of : orthotropic_entries())
       declare(of.name, EntryType::list, of.name == "Material angle" ? "0" : "", of.unit) =
-        of.words + " Numbers or formulas of x, y, z; with `Law = linear`, in finite elements and correspondence.";
+        of.words +
+        " Numbers or formulas of x, y, z; with `Law = linear`, in finite elements and correspondence.";
     entry("Thermal expansion", "0") =
       "Strain per `Temperature change` (section `Elasticity`)" + formula;
     entry("Fracture energy") =
@@ -358,7 +359,8 @@ namespace PeriDeal
     /** The entries of a law of the user, or that another one has none. Throws UserError. */
     void parse_user_law(const Material &material, Material::Law &law)
     {
-      const bool        is_user = law.kind == SolidLaw::user;
+      const bool has_bonds   = law.kind == SolidLaw::user_bonds,
+                 is_user     = law.kind == SolidLaw::user || has_bonds;
       const std::string file = "User law", numbers = "User properties", states = "User states";
       for (const std::string &entry : {file, numbers, states})
         material.refuse((material.is_given(entry) ||
@@ -373,9 +375,15 @@ namespace PeriDeal
       if (!is_user)
         return;
       material.refuse(law.user.library.empty(), file, "is empty, which 'Law = user' needs.");
+      material.refuse(
+        has_bonds && !material.phases.text(numbers).empty(),
+        numbers,
+        "differ from phase to phase, but bonds that lead from one to another have one law. "
+        "Give one list; moduli may differ.");
       for (const std::string modulus :
            {"Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio"})
-        material.refuse(!material.text(modulus).empty() || material.phases.gives(modulus),
+        material.refuse(!has_bonds &&
+                          (!material.text(modulus).empty() || material.phases.gives(modulus)),
                         modulus,
                         "is that of the other laws; 'Law = user' has its own, by 'User "
                         "properties'. Leave it out.");
@@ -426,10 +434,11 @@ namespace PeriDeal
                          force,
                          "is " + number_text(at_rest) + " at s = 0, where a bond has no force.");
         }
-      section.refuse(
-        law.kind == SolidLaw::formula && section.fracture_energy.has_value(),
-        "Fracture energy",
-        "is turned into a stretch by the linear law; with 'Law = formula' give 'Critical stretch'.");
+      section.refuse((law.kind == SolidLaw::formula || law.kind == SolidLaw::user_bonds) &&
+                       section.fracture_energy.has_value(),
+                     "Fracture energy",
+                     "is turned into a stretch by the linear law; with 'Law = " +
+                       section.text("Law") + "' give 'Critical stretch'.");
       parse_user_law(section, law);
       refuse_softening(section);
       refuse_plastic(section);
@@ -486,6 +495,8 @@ namespace PeriDeal
     parse_scatter();
     for (const std::string entry : {"Law", "Softening"})
       refuse_unless_elastic(entry, physics);
+    if (law.kind == SolidLaw::user && has_law_of_bonds)
+      law.kind = SolidLaw::user_bonds;
     for (const PlainEntry &entry : entries_of_laws())
       refuse_unless_elastic(entry.name, physics);
     parse_law(*this, law);

@@ -90,6 +90,12 @@ namespace PeriDeal
                          const bool                 by_elements,
                          const bool                 coupled)
     {
+      body.elasticity.refuse(
+        body.material.law.kind == SolidLaw::user_bonds &&
+          body.elasticity.solver == ElasticSolver::linear,
+        "Solver",
+        "is 'linear', but 'Law = user' in section 'Material' need not be. Use 'newton', 'conjugate "
+        "gradients', or 'dynamics'.");
       if (body.material.law.kind != SolidLaw::user)
         return;
       const auto refuse = [&](const bool is_so, const std::string &why) {
@@ -97,7 +103,7 @@ namespace PeriDeal
       };
       refuse(
         (!by_elements && !body.elasticity.is_correspondence()) || coupled,
-        "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' with 'Model = correspondence' (section 'Elasticity'). Use these.");
+        "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' with 'Model = correspondence' (section 'Elasticity'), or of bonds, for 'Models = peridynamics' alone. Use these.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
       refuse_large_changes(body, refuse);
       refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
@@ -158,7 +164,7 @@ namespace PeriDeal
       refuse(body.elasticity.has_full_kinematics(),
              "which is for small displacements. Use 'Kinematics = linear', or 'state-based'.");
       refuse(kind == SolidLaw::viscoelastic || kind == SolidLaw::softening ||
-               kind == SolidLaw::formula,
+               kind == SolidLaw::formula || kind == SolidLaw::user_bonds,
              "whose nodes have a law of stresses; 'Law = " + body.material.text("Law") +
                "' (section 'Material') is one of bonds. Use 'state-based'.");
       refuse(

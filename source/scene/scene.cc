@@ -134,7 +134,7 @@ namespace PeriDeal
     const auto &forces = initial_and_source.body_force;
     return general.physics == Physics::elasticity && elasticity.is_static() &&
            (warms_slowly() || !cracks.tips.empty() || material.law.kind == SolidLaw::viscoelastic ||
-            (material.law.kind == SolidLaw::user && !time.steady) || // which may know time
+            (!material.law.user.library.empty() && !time.steady) || // which may know time
             boundary_conditions.depends_on_time() ||
             std::any_of(forces.begin(), forces.end(), [](const auto &force) {
               return force.depends_on_time();
@@ -196,6 +196,8 @@ namespace PeriDeal
           "found 'true', which with 'Kinematics = full' is for 'Stepper = verlet' only; 'Stepper' in section 'Time' is 'newmark'. Leave one of them out.");
         elasticity.contact = false;
       }
+    material.has_law_of_bonds = general.models == std::vector<ModelKind>{ModelKind::peridynamics} &&
+                                !elasticity.is_correspondence();
     material.parse(general.physics,
                    dim,
                    elasticity.plane,

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "bond_law_header.h"
+
 namespace PeriDeal
 {
   namespace fs = std::filesystem;
@@ -82,6 +84,7 @@ namespace PeriDeal
       for (const char *const name : {"ABA_PARAM.INC", "aba_param.inc"})
         std::ofstream(folder / name) << "      implicit real*8(a-h,o-z)\n"
                                         "      parameter (nprecd=2)\n";
+      std::ofstream(folder / "perideal_bond_law.h") << text_of_bond_law_header;
       const fs::path log     = folder / "log";
       const int      status  = std::system(("cd " + as_word(folder.string()) + " && " + compiler +
                                       " -shared -fPIC -O2 -I. -o " + as_word(library.string()) +
@@ -141,13 +144,43 @@ namespace PeriDeal
           return nullptr;
         }
       // A pointer to data may be turned into one to a function on systems that have dlopen().
-      const auto umat = reinterpret_cast<Umat>(dlsym(handle, "umat_"));
-      if (umat != nullptr)
-        return std::make_shared<const UserLibrary>(handle, umat, file_name);
-      dlclose(handle);
-      fault = "has no 'umat_', which a subroutine UMAT in Fortran makes, or 'void umat_(...)' in C "
-              "('extern \"C\"' in C++).";
-      return nullptr;
+      const auto umat     = reinterpret_cast<Umat>(dlsym(handle, "umat_"));
+      const auto bond_law = reinterpret_cast<BondLawOfUser>(dlsym(handle, "perideal_bond_law"));
+      const auto version  = reinterpret_cast<int (*)()>(dlsym(handle, "perideal_bond_law_version"));
+      return std::make_shared<const UserLibrary>(handle,
+                                                 umat,
+                                                 bond_law,
+                                                 version == nullptr ? 0 : version(),
+                                                 file_name);
+    }
+
+
+    /** Whether it has what is wanted; else what is wrong, as it goes on after the file's name. */
+    std::string lack_of(const UserLibrary &library, const UserLibrary::Wanted wanted)
+    {
+      constexpr int known    = PERIDEAL_BOND_LAW_VERSION;
+      const bool    has_umat = library.umat != nullptr, has_bonds = library.bond_law != nullptr;
+      if (wanted == UserLibrary::Wanted::stresses)
+        return has_umat  ? "" :
+               has_bonds ? "has a 'perideal_bond_law', a law of bonds, which is for 'Models = "
+                           "peridynamics' with 'Model = state-based' or 'bond-based' (section "
+                           "'Elasticity'); here it needs a 'umat_'." :
+                           "has no 'umat_', which a subroutine UMAT in Fortran makes, or 'void "
+                           "umat_(...)' in C ('extern \"C\"' in C++).";
+      if (!has_bonds)
+        return has_umat ? "has a 'umat_', a law of stresses, which is for 'Models = finite "
+                          "elements', and for 'peridynamics' with 'Model = correspondence' "
+                          "(section 'Elasticity'). Use these, or a 'perideal_bond_law'." :
+                          "has no 'perideal_bond_law', the law of bonds that perideal_bond_law.h "
+                          "tells of ('extern \"C\"' in C++).";
+      if (library.bond_law_version == 0)
+        return "has no 'perideal_bond_law_version', which returns PERIDEAL_BOND_LAW_VERSION of "
+               "perideal_bond_law.h.";
+      return library.bond_law_version == known ?
+               "" :
+               "was made with version " + std::to_string(library.bond_law_version) +
+                 " of perideal_bond_law.h; this program has version " + std::to_string(known) +
+                 ". Compile it with that.";
     }
 
 
@@ -169,7 +202,8 @@ namespace PeriDeal
 
   std::shared_ptr<const UserLibrary> UserLibrary::of_file(const std::string &file_name,
                                                           const std::string &folder,
-                                                          const MPI_Comm     communicator)
+                                                          const MPI_Comm     communicator,
+                                                          const Wanted       wanted)
   {
     const fs::path  file = library_near(file_name, folder);
     std::error_code ignored;
@@ -187,8 +221,14 @@ namespace PeriDeal
     int        rank = 0, is_known = last ? 1 : 0, all_know = 0;
     MPI_Comm_rank(communicator, &rank);
     MPI_Allreduce(&is_known, &all_know, 1, MPI_INT, MPI_MIN, communicator);
+    const auto with_what_is_wanted = [&](const std::shared_ptr<const UserLibrary> &library) {
+      const std::string lack = lack_of(*library, wanted);
+      throw_on_all_if_any(communicator,
+                          lack.empty() ? "" : user_law_file + file_name + "' " + lack);
+      return library;
+    };
     if (all_know == 1)
-      return last;
+      return with_what_is_wanted(last);
 
     const std::string                compiler = compiler_of(file);
     std::unique_ptr<TemporaryFolder> compiled;
@@ -218,7 +258,7 @@ namespace PeriDeal
     throw_on_all_if_any(communicator,
                         fault.empty() ? "" : user_law_file + file_name + "' " + fault);
     kept = now;
-    return now;
+    return with_what_is_wanted(now);
   }
 
 

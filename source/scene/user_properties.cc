@@ -44,7 +44,7 @@ namespace PeriDeal
   std::string user_law_text(const Material &material)
   {
     const auto &law = material.law;
-    return law.kind != SolidLaw::user ?
+    return law.kind != SolidLaw::user && law.kind != SolidLaw::user_bonds ?
              "" :
              law.user.library + ", properties: " + std::to_string(law.user.properties.size()) +
                ", states: " + std::to_string(law.user.n_states);

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <string>
+
 namespace PeriDeal
 {
   /** One bond as its law sees it, with W = V_i V_j omega f. */
@@ -11,6 +13,7 @@ namespace PeriDeal
     double product;     // W x e, e the extension, thermal extension taken off
     double square;      // W x^2
     double damage = 0.; // mean of both ends, each from 0 (whole) to 1
+    double length = 0.; // x; 0 where nobody asks
 
     /** e/x. */
     double stretch() const
@@ -46,6 +49,12 @@ namespace PeriDeal
     virtual bool is_linear() const
     {
       return false;
+    }
+
+    /** What has been found wrong with it so far, empty: nothing; null: it has no faults. */
+    virtual const std::string *fault() const
+    {
+      return nullptr;
     }
 
     /** BondValues::damage is used. */

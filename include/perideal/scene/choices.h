@@ -129,7 +129,8 @@ namespace PeriDeal
     plastic,
     softening,
     formula,
-    user
+    user,      // of stresses
+    user_bonds // the same entry, of bonds
   };
 
   /** SofteningCurve. */

@@ -45,6 +45,8 @@ namespace PeriDeal
     };
     std::optional<Scatter> scatter;
 
+    bool has_law_of_bonds = false; // Law = user is one of bonds: set before parse()
+
     /** How forces follow from what the body has gone through. */
     struct Law
     {
@@ -56,7 +58,7 @@ namespace PeriDeal
       std::optional<MaterialProperty> yield_stress; // plastic
       MaterialProperty                hardening;    // of the yield stress over plastic strain
 
-      /** A shared library with a law of stresses. */
+      /** A shared library with a law of stresses or of bonds. */
       struct User
       {
         std::string         library;

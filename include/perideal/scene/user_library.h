@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <perideal/scene/perideal_bond_law.h>
+
 #include <mpi.h>
 
 #include <cstddef>
@@ -52,22 +54,41 @@ namespace PeriDeal
                         std::size_t cmname_length);
 
 
-  /** A shared library with a `umat_`, loaded while this lives. */
+  /** perideal_bond_law() of perideal_bond_law.h. */
+  using BondLawOfUser = decltype(&perideal_bond_law);
+
+
+  /** A shared library with a law of stresses or of bonds, loaded while this lives. */
   class UserLibrary
   {
   public:
+    enum class Wanted
+    {
+      stresses, // a `umat_`
+      bonds     // a perideal_bond_law()
+    };
+
     /**
      * The file, a library or a source in Fortran or C, which process 0 compiles into a temporary
      * folder. What is loaded already is not loaded again. Collective. Throws UserError.
      *
      * @param folder where the file is looked for if there is nothing at its path
+     * @param wanted what it has to have
      */
     static std::shared_ptr<const UserLibrary> of_file(const std::string &file_name,
                                                       const std::string &folder,
-                                                      const MPI_Comm     communicator);
+                                                      const MPI_Comm     communicator,
+                                                      const Wanted       wanted);
 
-    UserLibrary(void *const handle, const Umat umat, const std::string &file_name)
+    /** @param bond_law_version 0: it has no law of bonds */
+    UserLibrary(void *const         handle,
+                const Umat          umat,
+                const BondLawOfUser bond_law,
+                const int           bond_law_version,
+                const std::string  &file_name)
       : umat(umat)
+      , bond_law(bond_law)
+      , bond_law_version(bond_law_version)
       , file_name(file_name)
       , handle(handle)
     {}
@@ -77,8 +98,10 @@ namespace PeriDeal
 
     ~UserLibrary();
 
-    const Umat        umat;
-    const std::string file_name; // as users know it
+    const Umat          umat;     // null: it has none
+    const BondLawOfUser bond_law; // likewise
+    const int           bond_law_version;
+    const std::string   file_name; // as users know it
 
   private:
     void *const handle;

@@ -184,14 +184,16 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             y.local_element(dim * i + d) = -sum[d];
         }
-    if (!ends.images)
-      return;
-    ends.find(u);
-    ends.images->begin_forces();
-    visit_beyond([&](const unsigned int i, const Bond &bond) {
-      subtract(y, i, bond.neighbor, force(u, i, bond, tau) * kinematics.direction(u, i, bond));
-    });
-    ends.images->pass_on(y);
+    if (ends.images)
+      {
+        ends.find(u);
+        ends.images->begin_forces();
+        visit_beyond([&](const unsigned int i, const Bond &bond) {
+          subtract(y, i, bond.neighbor, force(u, i, bond, tau) * kinematics.direction(u, i, bond));
+        });
+        ends.images->pass_on(y);
+      }
+    law.throw_faults(families.nodes().communicator());
   }
 
 
@@ -280,6 +282,7 @@ namespace PeriDeal
         sum += of_node;
       }
     u.set_ghost_state(false);
+    law.throw_faults(families.nodes().communicator());
     return Utilities::MPI::sum(sum, families.nodes().communicator());
   }
 

@@ -94,7 +94,7 @@ namespace PeriDeal
       return hanging.is_hanging(unknown);
     })
   {
-    if (LawSteps(body.material.law).any())
+    if (LawSteps(body.material.law, {"", MPI_COMM_SELF}).any())
       {
         Vector layout(unknowns);
         law = std::make_unique<Law>(Law{NodalLaw(body.material.law, layout), {}, layout, layout});

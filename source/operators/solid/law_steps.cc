@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/user_error.h>
 #include <perideal/laws/bond_force_formula.h>
+#include <perideal/laws/user_bond_law.h>
 #include <perideal/laws/viscoelastic_solid.h>
 #include <perideal/operators/solid/law_steps.h>
 
@@ -14,33 +16,56 @@ namespace PeriDeal
 {
   namespace
   {
-    using Maker = std::function<std::unique_ptr<BondLaw>(const Material::Law &)>;
+    using Maker =
+      std::function<std::unique_ptr<BondLaw>(const Material::Law &, const LawSteps::Files &)>;
 
     /** The one list of laws, but for the linear one, which is LinearPeridynamicSolid. */
     const std::map<SolidLaw, Maker> &makers()
     {
       static const std::map<SolidLaw, Maker> list = {
         {SolidLaw::viscoelastic,
-         [](const Material::Law &law) {
+         [](const Material::Law &law, const auto &) {
            return std::make_unique<ViscoelasticSolid>(law.relaxation);
          }},
-        {SolidLaw::formula, [](const Material::Law &law) {
+        {SolidLaw::formula,
+         [](const Material::Law &law, const auto &) {
            return std::make_unique<BondForceFormula>(
              [force = law.bond_force](const double s, const double damage) {
                return force.value(dealii::Point<2>(s, damage));
              });
+         }},
+        {SolidLaw::user_bonds, [](const Material::Law &law, const LawSteps::Files &files) {
+           return std::make_unique<UserBondLaw>(UserLibrary::of_file(law.user.library,
+                                                                     files.folder,
+                                                                     files.communicator,
+                                                                     UserLibrary::Wanted::bonds),
+                                                law.user.properties,
+                                                law.user.n_states);
          }}};
       return list;
     }
   } // namespace
 
 
-  LawSteps::LawSteps(const Material::Law &of_scene)
+  LawSteps::LawSteps(const Material::Law &of_scene, const Files &files)
+    : file(of_scene.user.library)
   {
     const auto found = makers().find(of_scene.kind);
     if (found != makers().end())
-      law = found->second(of_scene);
+      law = found->second(of_scene, files);
+    throw_faults(files.communicator);
     set_time(0.);
+  }
+
+
+  void LawSteps::throw_faults(const MPI_Comm communicator) const
+  {
+    const std::string *const fault = any() ? law->fault() : nullptr;
+    if (fault != nullptr) // on all processes or on none
+      throw_on_all_if_any(communicator,
+                          fault->empty() ? "" :
+                                           "Entry 'User law' in section 'Material': '" + file +
+                                             "' " + *fault + ".");
   }
 
 

@@ -8,7 +8,7 @@
 namespace PeriDeal
 {
   NodalLaw::NodalLaw(const Material::Law &law, const Vector &layout)
-    : steps(law)
+    : steps(law, {"", MPI_COMM_SELF}) // not of the user
     , histories(steps.n_history(), layout)
   {
     for (Vector &history : histories)

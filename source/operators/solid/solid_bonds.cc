@@ -102,7 +102,7 @@ namespace PeriDeal
   SolidBonds<dim>::SolidBonds(Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : families(nodes.find_parts(body.boundary_conditions), body)
     , laws(families.nodes(), body)
-    , law(body.material.law)
+    , law(body.material.law, {body.domain.files.folder, body.domain.files.communicator})
     , ends(families)
     , rows(families, laws, ends, body)
     , sums(families, ends, rows, laws)

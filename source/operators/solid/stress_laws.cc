@@ -43,7 +43,8 @@ namespace PeriDeal
       return {
         std::make_unique<const UserStress>(UserLibrary::of_file(user.library,
                                                                 body.domain.files.folder,
-                                                                body.domain.files.communicator),
+                                                                body.domain.files.communicator,
+                                                                UserLibrary::Wanted::stresses),
                                            dim,
                                            stress_state_of(dim, body.elasticity.plane),
                                            numbers),

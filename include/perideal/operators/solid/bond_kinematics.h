@@ -67,7 +67,8 @@ namespace PeriDeal
     BondValues values(const double *u, const unsigned int i, const Bond &bond) const
     {
       const dealii::Tensor<1, dim> xi = ends.vector(i, bond.neighbor);
-      return {extension_moment(u, i, bond), full ? length(bond) * xi.norm() : bond.moment * xi};
+      const double                 x  = xi.norm();
+      return {extension_moment(u, i, bond), full ? length(bond) * x : bond.moment * xi, 0., x};
     }
 
     /** Y, with full kinematics of the length W x, else W xi. */

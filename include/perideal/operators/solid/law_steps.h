@@ -8,7 +8,10 @@
 #include <perideal/laws/bond_law.h>
 #include <perideal/scene/material.h>
 
+#include <mpi.h>
+
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -22,7 +25,15 @@ namespace PeriDeal
   class LawSteps
   {
   public:
-    explicit LawSteps(const Material::Law &law);
+    /** Where the file of a law of the user is. */
+    struct Files
+    {
+      std::string folder;
+      MPI_Comm    communicator;
+    };
+
+    /** Collective. Throws UserError. */
+    LawSteps(const Material::Law &law, const Files &files);
 
     /** Else bonds are those of the linear solid. */
     bool any() const
@@ -46,11 +57,15 @@ namespace PeriDeal
     /** The state at t is accepted. */
     void accept(const double t);
 
+    /** Throws UserError if a law of the user has had a fault on any process. Collective. */
+    void throw_faults(const MPI_Comm communicator) const;
+
     /** Collective. */
     void exchange(Archive &archive);
 
   private:
     std::unique_ptr<BondLaw> law;
+    std::string              file; // of a law of the user
     bool                     begun    = false;
     double                   accepted = 0.;
   };
