@@ -118,7 +118,8 @@ namespace PeriDeal
       " Greater than -1 and less than 0.5; in plane stress and in bars it may be 0.5." + two;
     for (const OrthotropicEntry &of : orthotropic_entries())
       declare(of.name, EntryType::list, of.name == "Material angle" ? "0" : "", of.unit) =
-        of.words + " Numbers or formulas of x, y, z; with `Law = linear`, in finite elements and correspondence.";
+        of.words +
+        " Numbers or formulas of x, y, z; with `Law = linear`, in finite elements and correspondence.";
     entry("Thermal expansion", "0") =
       "Strain per `Temperature change` (section `Elasticity`)" + formula;
     entry("Fracture energy") =
@@ -129,8 +130,8 @@ namespace PeriDeal
     declare(law.kind,
             "Law",
             "linear",
-            {"linear", "viscoelastic", "plastic", "softening", "formula", "user"}) =
-      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `user`: by a program of your own, a UMAT (`User law`), in finite elements and correspondence.";
+            {"linear", "viscoelastic", "plastic", "softening", "formula", "hyperelastic", "user"}) =
+      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `hyperelastic`: rubber, a compressible neo-Hookean body of the two moduli, in finite elements and correspondence with `Kinematics = full` (section `Elasticity`); `user`: by a program of your own, a UMAT (`User law`), in finite elements and correspondence.";
     entry("Tensile strength") =
       "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
       " The area under stress over opening is Fracture energy.";

@@ -129,6 +129,7 @@ namespace PeriDeal
     plastic,
     softening,
     formula,
+    hyperelastic,
     user
   };
 
