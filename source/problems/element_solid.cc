@@ -480,6 +480,8 @@ namespace PeriDeal
 
       std::vector<StressIntensity> stress_intensities(const double time) const override
       {
+        if (scene.elasticity.has_full_kinematics()) // they are those of small strains
+          return {};
         if constexpr (dim > 1)
           return intensities_of_cells(scene,
                                       *elements,
@@ -711,7 +713,7 @@ namespace PeriDeal
                                       const Point<dim>                           &p) const
       {
         if (of_law.points != nullptr)
-          return (*of_law.points)[of_law.nearest[q]].response.stress;
+          return elements->beside().stresses->stress_at(of_law.nearest[q]);
         const Vector &at_nodes = elements->temperature_change();
         const double  change = at_nodes.size() == 0 ? scene.elasticity.temperature_change.value(p) :
                                                       value_at(values, q, indices, at_nodes);
@@ -737,8 +739,10 @@ namespace PeriDeal
         visit_cells(
           Quadrature<dim>(fe.get_unit_support_points()),
           [&](const auto &values, const unsigned int q, const auto &indices, const auto &gradient) {
-            const SymmetricTensor<2, dim> e    = symmetrize(gradient);
-            const auto                   &cell = values.get_cell();
+            SymmetricTensor<2, dim> e = symmetrize(gradient);
+            if (scene.elasticity.has_full_kinematics())
+              e += 0.5 * symmetrize(transpose(gradient) * gradient);
+            const auto &cell = values.get_cell();
             if (elements->cut_cells()[cell->active_cell_index()])
               return; // it carries nothing
             const double size = cell->measure();

@@ -52,7 +52,8 @@ namespace PeriDeal
       for (unsigned int c = 0; c < dim; ++c)
         {
           double g[dim];
-          if (law.kind == SolidLaw::user || !law.orthotropy.young.empty() || // has no two moduli
+          if (law.kind == SolidLaw::user || law.kind == SolidLaw::hyperelastic ||
+              !law.orthotropy.young.empty() || // has no two moduli
               !exact.gradient(coordinates_of(point).data(), t, c, g))
             {
               for (unsigned int a = 0; a < 3; ++a)

@@ -12,8 +12,7 @@ namespace PeriDeal
     declare(model, "Model", "state-based", {"state-based", "bond-based", "correspondence"}) =
       "Peridynamic solid: state-based (linear peridynamic solid, any Poisson ratio), bond-based (prototype microelastic, whose "
       "Poisson ratio is 1/4, in plane stress 1/3; its stiffness against equal strains in all directions is that of the moduli; see `Micromodulus`), or correspondence (nodes make a stress of their "
-      "displacement gradient, by the laws of stresses that finite elements have: linear, isotropic or orthotropic, plastic, and those of users; in 2 and 3 dimensions, with `Models = peridynamics` and small "
-      "displacements; `Horizon ratio = 2` is best).";
+      "displacement gradient, by the laws of stresses that finite elements have: linear, isotropic or orthotropic, plastic, hyperelastic, and those of users; in 2 and 3 dimensions, with `Models = peridynamics`; `Horizon ratio = 2` is best).";
     declare(micromodulus, "Micromodulus", "family", {"family", "constant"}) =
       "Of `Model = bond-based`: the stiffness of a bond is divided by the sum over the family of each of its ends as it is (`family`), so that a surface costs little "
       "stiffness, or by that of a complete one, the same for all bonds (`constant`), as in the prototype microelastic brittle material of the literature, "
@@ -21,7 +20,7 @@ namespace PeriDeal
     declare(plane, "Plane", "stress", {"stress", "strain"}) =
       "Two dimensions only: no stress, or no strain, out of the plane.";
     declare(kinematics, "Kinematics", "linear", {"linear", "full"}) =
-      "Strains of small displacements, or of the deformed body with whatever rotations (`full`).";
+      "Strains of small displacements, or of the deformed body with whatever rotations (`full`): in peridynamics with `Model = state-based` or `bond-based`, in finite elements and `correspondence` with `Law = hyperelastic` (section `Material`), in finite elements with `Law = linear`, too. Loads are forces per area and volume of the undeformed body.";
     declare("Temperature change", EntryType::formula, "0", "temperature") =
       "Temperature above that of the unstrained body, a number or a formula of x, y, z; it strains the body by "
       "`Thermal expansion` in section `Material` times this. Or `computed`: each model first solves the heat problem that the scene describes, too "

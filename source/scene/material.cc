@@ -130,8 +130,8 @@ namespace PeriDeal
     declare(law.kind,
             "Law",
             "linear",
-            {"linear", "viscoelastic", "plastic", "softening", "formula", "user"}) =
-      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `user`: by a program of your own, a UMAT (`User law`), in finite elements and correspondence.";
+            {"linear", "viscoelastic", "plastic", "softening", "formula", "hyperelastic", "user"}) =
+      "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `hyperelastic`: rubber, a compressible neo-Hookean body of the two moduli, in finite elements and correspondence with `Kinematics = full` (section `Elasticity`); `user`: by a program of your own, a UMAT (`User law`), in finite elements and correspondence.";
     entry("Tensile strength") =
       "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
       " The area under stress over opening is Fracture energy.";
@@ -495,7 +495,7 @@ namespace PeriDeal
     parse_scatter();
     for (const std::string entry : {"Law", "Softening"})
       refuse_unless_elastic(entry, physics);
-    if (law.kind == SolidLaw::user && has_law_of_bonds)
+    if (law.kind == SolidLaw::user && law.user.of_bonds)
       law.kind = SolidLaw::user_bonds;
     for (const PlainEntry &entry : entries_of_laws())
       refuse_unless_elastic(entry.name, physics);

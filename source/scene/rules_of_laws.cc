@@ -4,6 +4,8 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/rules.h>
 
+#include <cmath>
+
 namespace PeriDeal
 {
   namespace
@@ -39,16 +41,31 @@ namespace PeriDeal
     }
 
 
+    template <int dim>
+    bool is_warm_body(const BodyParameters<dim> &body)
+    {
+      return body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change);
+    }
+
+
     /** What laws of stresses are not for, by refuse(is so, why). */
+    template <int dim, typename Refuse>
+    void refuse_cracks(const BodyParameters<dim> &body, const Refuse &refuse)
+    {
+      refuse(body.material.breaks(),
+             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
+      refuse(!body.cracks.tips.empty(),
+             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+    }
+
+
+    /** The same of those of small displacements. */
     template <int dim, typename Refuse>
     void refuse_large_changes(const BodyParameters<dim> &body, const Refuse &refuse)
     {
       refuse(body.elasticity.has_full_kinematics(),
              "which is for small displacements: use 'Kinematics = linear' (section 'Elasticity').");
-      refuse(body.material.breaks(),
-             "whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
-      refuse(!body.cracks.tips.empty(),
-             "which is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks').");
+      refuse_cracks(body, refuse);
     }
 
 
@@ -121,6 +138,48 @@ namespace PeriDeal
     }
 
 
+    /** Laws of stresses of large deformations: hyperelastic ones, of elements linear ones, too. */
+    template <int dim>
+    void refuse_large_deformations(const BodyParameters<dim> &body,
+                                   const bool                 by_elements,
+                                   const bool                 coupled)
+    {
+      const bool is_hyperelastic = body.material.law.kind == SolidLaw::hyperelastic,
+                 is_full         = body.elasticity.has_full_kinematics();
+      const auto refuse          = [&](const bool is_so, const std::string &why) {
+        if (is_hyperelastic)
+          body.material.refuse(is_so, "Law", "found 'hyperelastic', " + why);
+        else
+          body.elasticity.refuse(is_so,
+                                 "Kinematics",
+                                 "found 'full' with 'Law = linear' (section 'Material'), " + why);
+      };
+      if (is_hyperelastic)
+        {
+          refuse(
+            (!by_elements && !body.elasticity.is_correspondence()) || coupled,
+            "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' with 'Model = correspondence' (section 'Elasticity'). Use these.");
+          refuse(
+            !is_full,
+            "which is for large deformations: use 'Kinematics = full' (section 'Elasticity').");
+          body.material.refuse(
+            dim == 2 && body.elasticity.plane == PlaneState::stress &&
+              body.material.uniform_moduli() &&
+              !std::isfinite(body.material.moduli(dealii::Point<dim>()).bulk),
+            "Poisson ratio",
+            "is 0.5, but 'Law = hyperelastic' has a finite bulk modulus. Use less, such as 0.499.");
+        }
+      else if (!by_elements || coupled || !is_full || body.material.law.kind != SolidLaw::linear)
+        return;
+      refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
+      refuse_cracks(body, refuse);
+      refuse(is_warm_body(body), "which knows no 'Temperature change' (section 'Elasticity').");
+      refuse(
+        !is_hyperelastic && dim == 2 && body.elasticity.plane == PlaneState::stress,
+        "which finite elements have in three dimensions and in plane strain. Use 'Plane = strain', 'Law = hyperelastic', or 'Models = peridynamics'.");
+    }
+
+
     template <int dim>
     void refuse_orthotropic_body(const BodyParameters<dim> &body,
                                  const bool                 by_elements,
@@ -161,8 +220,9 @@ namespace PeriDeal
       refuse(coupled,
              "which is for 'Models = peridynamics', not for 'coupled'. Use 'state-based'.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3. Use 'state-based'.");
-      refuse(body.elasticity.has_full_kinematics(),
-             "which is for small displacements. Use 'Kinematics = linear', or 'state-based'.");
+      refuse(
+        body.elasticity.has_full_kinematics() && kind != SolidLaw::hyperelastic,
+        "which is for small displacements, but with 'Law = hyperelastic' (section 'Material'). Use that one or 'Kinematics = linear', or 'state-based'.");
       refuse(kind == SolidLaw::viscoelastic || kind == SolidLaw::softening ||
                kind == SolidLaw::formula || kind == SolidLaw::user_bonds,
              "whose nodes have a law of stresses; 'Law = " + body.material.text("Law") +
@@ -189,6 +249,7 @@ namespace PeriDeal
     const SolidLaw  kind     = material.law.kind;
     refuse_correspondence(body, by_elements, coupled);
     refuse_orthotropic_body(body, by_elements, coupled);
+    refuse_large_deformations(body, by_elements, coupled);
     if (kind == SolidLaw::linear)
       return;
     body.coupling.refuse(
@@ -196,6 +257,11 @@ namespace PeriDeal
       "Scheme",
       "found '" + body.coupling.text("Scheme") +
         "', whose bonds take over bulk stiffness, too; with 'Law = viscoelastic' in section 'Material' use 'blending'.");
+    body.elasticity.refuse(
+      kind == SolidLaw::viscoelastic && by_elements && !coupled &&
+        body.elasticity.has_full_kinematics(),
+      "Kinematics",
+      "'full' is for finite elements with 'Law = hyperelastic' and 'linear' (section 'Material'). Use 'linear'.");
     material.refuse(
       kind == SolidLaw::formula && by_elements && !coupled,
       "Law",

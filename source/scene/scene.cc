@@ -174,6 +174,19 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    void forgo_contact(ElasticityControl &elasticity)
+    {
+      elasticity.refuse(
+        elasticity.contact_is_asked(),
+        "Contact",
+        "found 'true', which with 'Kinematics = full' is for 'Stepper = verlet' only; 'Stepper' in section 'Time' is 'newmark'. Leave one of them out.");
+      elasticity.contact = false;
+    }
+  } // namespace
+
+
   template <int dim>
   void Scene<dim>::parse_and_validate()
   {
@@ -189,15 +202,10 @@ namespace PeriDeal
     time.parse();
     take_times();
     if (elasticity.has_full_kinematics() && time.stepper == "newmark")
-      {
-        elasticity.refuse(
-          elasticity.contact_is_asked(),
-          "Contact",
-          "found 'true', which with 'Kinematics = full' is for 'Stepper = verlet' only; 'Stepper' in section 'Time' is 'newmark'. Leave one of them out.");
-        elasticity.contact = false;
-      }
-    material.has_law_of_bonds = general.models == std::vector<ModelKind>{ModelKind::peridynamics} &&
-                                !elasticity.is_correspondence();
+      forgo_contact(elasticity);
+    material.law.user.of_bonds = general.models ==
+                                   std::vector<ModelKind>{ModelKind::peridynamics} &&
+                                 !elasticity.is_correspondence();
     material.parse(general.physics,
                    dim,
                    elasticity.plane,

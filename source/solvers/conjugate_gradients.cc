@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/diverged.h>
 #include <perideal/solvers/linear_solver.h>
 #include <perideal/solvers/static_solver.h>
 
@@ -120,7 +121,17 @@ namespace PeriDeal
           {
             trial = u;
             trial.add(at, direction);
-            op.residual(residual, trial, t);
+            try
+              {
+                op.residual(residual, trial, t);
+              }
+            catch (const Diverged &failure) // on all processes
+              {
+                if (failure.trip.monitor != "inversion" || k + 1 == most)
+                  throw;
+                at = 0.5 * (below + at);
+                continue;
+              }
             const double force = residual * direction;
             // Also out if it is not finite: ResidualGoal says so.
             if (!(std::abs(force) > enough * start))

@@ -122,7 +122,17 @@ namespace PeriDeal
             u = start;
             u.add(at, change);
             op.distribute(u, t);
-            op.residual(residual, u, t);
+            try
+              {
+                op.residual(residual, u, t);
+              }
+            catch (const Diverged &failure) // on all processes
+              {
+                if (failure.trip.monitor != "inversion" || k == most)
+                  throw;
+                at = 0.5 * (below + at);
+                continue;
+              }
             const double force = residual * change;
             // Out also where no energy says how far to go, and where the force is not finite:
             // ResidualGoal says so.

@@ -393,7 +393,19 @@ namespace PeriDeal
       }
     else
       size = std::max(size, start_statics(op, u, t, options));
-    solve(u, t, may_be_left);
+    try
+      {
+        solve(u, t, may_be_left);
+      }
+    catch (const Diverged &failure) // on all processes
+      {
+        // Of forces, which have no value there (bonds have one).
+        if (failure.trip.monitor != "inversion" || failure.trip.value > 0.)
+          throw;
+        op.linearize(last);
+        continue_statics(op, u = last, t, options);
+        solve(u, t, may_be_left);
+      }
     const auto [end, most] = shorten(u);
     op.unbalanced(unbalanced, u, end);
     accept(op, u, end, so_far); // what breaks then does so at once

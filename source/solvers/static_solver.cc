@@ -135,6 +135,30 @@ namespace PeriDeal
   }
 
 
+  void continue_statics(ElasticOperator     &op,
+                        Vector              &u,
+                        const double         t,
+                        const StaticOptions &options)
+  {
+    constexpr double rough = 1e-3;
+    Vector           rhs, image, change;
+    for (Vector *v : {&rhs, &image, &change})
+      op.initialize_vector(*v);
+    op.unbalanced(rhs, u, t);
+    change = u;
+    op.distribute(u, t);
+    change.sadd(-1., 1., u);
+    op.multiply(image, change); // what supports move, and what follows from that alone
+    rhs -= image;
+    op.clear_constrained(rhs);
+    change = 0.;
+    LinearSolver(op, rough, options.max_iterations, options.direct_up_to)
+      .solve(0., 1., change, rhs);
+    u += change;
+    op.distribute(u, t);
+  }
+
+
   ResidualGoal::ResidualGoal(const std::string   &solver,
                              const StaticOptions &options,
                              const double         size)

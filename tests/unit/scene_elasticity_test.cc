@@ -360,7 +360,8 @@ Peridynamics/Operator form=lattice & Material/Critical stretch=0.1 => Peridynami
 Output/Grid=5, 5 =>
 Finite elements/Capacity=consistent => Finite elements/Capacity | lumped
 Models=peridynamics & Elasticity/Kinematics=full & Elasticity/Solver=dynamics =>
-Elasticity/Kinematics=full & Elasticity/Solver=dynamics => Elasticity/Kinematics | small displacements
+Elasticity/Kinematics=full & Elasticity/Solver=dynamics => Elasticity/Kinematics | 'Plane = strain' | 'Law = hyperelastic' | 'Models = peridynamics'
+Elasticity/Kinematics=full & Elasticity/Solver=dynamics & Elasticity/Plane=strain =>
 Peridynamics/Boundary treatment=fictitious mirror => Peridynamics/Boundary treatment | not defined | use 'none'
 Peridynamics/Boundary treatment=fictitious constant => Peridynamics/Boundary treatment | not defined | use 'none'
 Peridynamics/Boundary treatment=layer => Peridynamics/Boundary treatment | not defined | use 'none'

@@ -274,11 +274,34 @@ Elasticity/Plane=strain & Cracks/Segments=0.2,0.5 ; 0.4,0.5 => 'Contact' | 'Law 
   }
 
 
+  TEST(SceneMistakes, of_hyperelastic_bodies)
+  {
+    expect_said(elastic_and({"Models=finite elements",
+                             "Material/Law=hyperelastic",
+                             "Elasticity/Kinematics=full",
+                             "Elasticity/Solver=newton"}),
+                R"(
+Elasticity/Kinematics=linear => 'Law' | 'hyperelastic' | 'Kinematics = full'
+Models=peridynamics => 'Law' | 'hyperelastic' | 'Models = finite elements' | 'Model = correspondence'
+Models=peridynamics & Elasticity/Model=bond-based => 'Law' | 'hyperelastic' | 'Models = finite elements' | 'Model = correspondence'
+Models=coupled & Coupling/Zone=everywhere => 'Law' | 'hyperelastic' | 'Models = finite elements'
+Elasticity/Solver=linear => 'Kinematics' | 'linear' | 'conjugate gradients'
+Material/Fracture energy=1 => 'Law' | 'hyperelastic' | 'Fracture energy'
+Cracks/Segments=0.2,0.5 ; 0.5,0.5 & Cracks/Growth=2: 0, 0.1,0 => 'Law' | 'hyperelastic' | 'Growth'
+Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'hyperelastic' | 'Temperature change'
+Material/Bulk modulus= & Material/Shear modulus= & Material/Young modulus=1 & Material/Poisson ratio=0.5 & Elasticity/Plane=stress => 'Poisson ratio' | 0.5 | 'Law = hyperelastic'
+Material/Bulk modulus= & Material/Shear modulus= & Material/Young modulus=1 & Material/Poisson ratio=0.5 & Elasticity/Plane=strain => 'Poisson ratio' | less than 0.5
+Material/Law=linear & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 & Elasticity/Plane=strain => 'Kinematics' | 'full' | 'Temperature change'
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Plane=strain => 'Kinematics' | 'Law = hyperelastic'
+)");
+  }
+
+
   TEST(SceneMistakes, of_correspondence)
   {
     expect_said(elastic_and({"Models=peridynamics", "Elasticity/Model=correspondence"}), R"(
 Models=coupled & Coupling/Zone=everywhere => 'Model' | 'correspondence' | 'coupled' | 'state-based'
-Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | small displacements | 'Kinematics = linear'
+Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | small displacements | 'Law = hyperelastic' | 'Kinematics = linear'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 => 'Model' | 'Law = viscoelastic' | 'state-based'
 Material/Law=formula & Material/Bond force=s & Elasticity/Solver=newton => 'Model' | 'Law = formula' | 'state-based'
 Peridynamics/Surface correction=moments => 'Surface correction' | 'moments' | 'correspondence' | 'none'

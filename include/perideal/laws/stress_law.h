@@ -35,6 +35,11 @@ namespace PeriDeal
    * all dimensions. Of a point a law gets some parameters, which may differ from point to point,
    * and its state: numbers of the law as they were when the last step was accepted. It owns none of
    * them, so that a step that is given up leaves nothing behind.
+   *
+   * Where deformations are large (`Kinematics = full`) the strain is that of Green and Lagrange,
+   * E = (F^T F - 1)/2, of the deformation gradient F = 1 + grad u, and the stress the second one of
+   * Piola and Kirchhoff, S = dW/dE, so that no law can tell a rotation: P = F S is the force per
+   * area of the undeformed body, F S F^T/det F that of the deformed one.
    */
   class StressLaw
   {
@@ -48,6 +53,7 @@ namespace PeriDeal
       Tensor stress;
       double stored     = 0.; // energy now
       double dissipated = 0.; // since the state that was accepted
+      double stretch    = 1.; // out of a plane of stress, of large deformations
     };
 
     /** What a law is asked about: a strain that is reached straight from the accepted one. */

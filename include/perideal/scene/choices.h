@@ -129,6 +129,7 @@ namespace PeriDeal
     plastic,
     softening,
     formula,
+    hyperelastic,
     user,      // of stresses
     user_bonds // the same entry, of bonds
   };

@@ -45,8 +45,6 @@ namespace PeriDeal
     };
     std::optional<Scatter> scatter;
 
-    bool has_law_of_bonds = false; // Law = user is one of bonds: set before parse()
-
     /** How forces follow from what the body has gone through. */
     struct Law
     {
@@ -64,6 +62,7 @@ namespace PeriDeal
         std::string         library;
         std::vector<double> properties;
         unsigned int        n_states = 0;
+        bool                of_bonds = false; // set before parse()
       } user;
 
       /**

@@ -14,8 +14,7 @@
  * that the law answers with: F = s is the linear solid. Energies are those over c: s^2/2 of the
  * linear solid.
  */
-#ifndef PERIDEAL_BOND_LAW_H
-#define PERIDEAL_BOND_LAW_H
+#pragma once
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,6 +57,4 @@ int perideal_bond_law(const struct perideal_bond  *bond,
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif

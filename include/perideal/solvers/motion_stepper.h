@@ -18,18 +18,15 @@ namespace PeriDeal
   /**
    * Watches that the steps of an explicit motion stay stable while the body deforms and breaks: the
    * limit 2/omega_max is that of the tangent, which changes with the directions and forces of the
-   * bonds. Looking costs half an application where bonds are those of the deformed body, else
-   * nothing; a new estimate, by Lanczos iterations, some thirty. There is one only when the largest
-   * stretch has changed much, bonds have broken or cracks have grown since the last, and only as
-   * long as all of them together take at most some percent of the applications, or the body has
-   * stretched far since.
+   * bonds. Looking (ElasticOperator::explicit_steps) costs half an application where bonds are
+   * those of the deformed body, else nothing; a new estimate, by Lanczos iterations, some thirty.
+   * There is one only when the largest stretch has changed much, bonds have broken or cracks have
+   * grown since the last, and only as long as all of them together take at most some percent of
+   * the applications, or the body has stretched far since.
    */
   class StepLimit
   {
   public:
-    /** How many steps to take between two looks. */
-    static constexpr unsigned int between_looks = 25;
-
     /**
      * @param op is referred to; @param step the first one, stable for the K that it has now;
      *           @param may_change else the user has given it

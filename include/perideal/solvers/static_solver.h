@@ -99,6 +99,15 @@ namespace PeriDeal
                        const double         t,
                        const StaticOptions &options);
 
+  /**
+   * From an equilibrium u, for which K is, to that at time t where forces are not linear, to three
+   * digits of the linear solution. Collective.
+   */
+  void continue_statics(ElasticOperator     &op,
+                        Vector              &u,
+                        const double         t,
+                        const StaticOptions &options);
+
   // One maker per method, each in its own file.
   std::unique_ptr<StaticSolver> make_linear_statics(ElasticOperator     &op,
                                                     const StaticOptions &options);

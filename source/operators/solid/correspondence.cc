@@ -6,6 +6,7 @@
 #include <perideal/base/place_text.h>
 #include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/base/user_error.h>
+#include <perideal/base/worst_trip.h>
 #include <perideal/laws/linear_stress.h>
 #include <perideal/operators/solid/correspondence.h>
 #include <perideal/operators/solid/stress_laws.h>
@@ -16,6 +17,7 @@
 #include <numeric>
 
 #include "family_sums.h"
+#include "large_deformation.h"
 
 // A node knows its gradient and its law, a bond what both of its nodes make of them.
 
@@ -25,17 +27,6 @@ namespace PeriDeal
 
   namespace
   {
-    template <int dim>
-    StressLaw::Tensor in_space(const SymmetricTensor<2, dim> &part)
-    {
-      StressLaw::Tensor full;
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = a; b < dim; ++b)
-          full[a][b] = part[a][b];
-      return full;
-    }
-
-
     template <int dim>
     SymmetricTensor<2, dim> in_body(const StressLaw::Tensor &full)
     {
@@ -200,6 +191,7 @@ namespace PeriDeal
     law.law       = std::move(placed.law);
     law.j2        = dynamic_cast<const J2Plasticity *>(law.law.get());
     law.is_linear = dynamic_cast<const LinearStress *>(law.law.get()) != nullptr;
+    law.is_full   = body.elasticity.has_full_kinematics();
     std::string message;
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
@@ -279,7 +271,7 @@ namespace PeriDeal
                                 SymmetricTensor<4, dim>       *of_tangent,
                                 typename J2Plasticity::Beside &flow) const
   {
-    Full strain = symmetrize(trial.slopes[i]);
+    Full strain = law.is_full ? strain_of(trial.slopes[i]) : symmetrize(trial.slopes[i]);
     for (unsigned int d = 0; thermal.any() && d < dim; ++d)
       strain[d][d] -= thermal[i];
     StressLaw::Tangent  full;
@@ -289,6 +281,13 @@ namespace PeriDeal
                         law.states.data() + i * law.law->n_state()};
     at.length          = std::pow(families.nodes().volume(i), 1. / dim);
     at.element         = families.nodes().partitioner()->local_to_global(i);
+    const double ratio = law.is_full ? determinant(deformation_of(trial.slopes[i])) : 1.;
+    if (!(ratio > 0.))
+      {
+        trial.responses[i] = StressLaw::Response();
+        return keep_lower(trial.inverted,
+                          turned_inside_out(families.nodes().position(i), ratio, steps.now));
+      }
     double *const next = trial.states.data() + i * law.law->n_state();
     flow.square        = beside;
     trial.responses[i] = law.j2 != nullptr ? law.j2->update_with(flow, at, next, wanted) :
@@ -327,11 +326,13 @@ namespace PeriDeal
     typename J2Plasticity::Beside flow;
     const double                  volume = families.nodes().volume(i);
     ask(i, 3. * shape.shear * shape.stabilizer / volume * squares, nullptr, flow);
-    trial.squares[i]             = squares;
-    trial.ratios[i]              = flow.ratio;
-    double *const        numbers = trial.numbers.begin() + (flows ? n_of_flow : n_numbers) * i;
-    const double         c       = shape.stabilizer * flow.ratio;
-    const Tensor<2, dim> stress(in_body<dim>(trial.responses[i].stress));
+    trial.squares[i]       = squares;
+    trial.ratios[i]        = flow.ratio;
+    double *const  numbers = trial.numbers.begin() + (flows ? n_of_flow : n_numbers) * i;
+    const double   c       = shape.stabilizer * flow.ratio;
+    Tensor<2, dim> stress(in_body<dim>(trial.responses[i].stress));
+    if (law.is_full)
+      stress = deformation_of(slopes) * stress;
     write(numbers + at_force, Tensor<2, dim>(volume * (stress * inverse) - c * slopes));
     numbers[at_stiffness] = c;
     if (!flows)
@@ -347,11 +348,14 @@ namespace PeriDeal
     u.update_ghost_values();
     const double *const values = u.begin();
     ends.find(values);
+    trial.inverted = Trip();
     for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
       find_at(values, i, inside, outside);
     });
     u.set_ghost_state(false);
     steps.throw_faults(*law.law, families.nodes().communicator());
+    if (law.is_full)
+      throw_lowest_if_any(families.nodes().communicator(), trial.inverted);
     trial.numbers.update_ghost_values();
     std::copy(values, values + u.locally_owned_size(), trial.displacement.begin());
     trial.known      = true;
@@ -463,6 +467,11 @@ namespace PeriDeal
   {
     if (law.is_linear)
       return 0.;
+    if (law.is_full) // which remembers and dissipates nothing
+      {
+        steps.accept(t, false);
+        return 0.;
+      }
     if (!knows(u) || !trial.has_forces || steps.now != t)
       {
         Vector y(trial.forces);
@@ -569,6 +578,8 @@ namespace PeriDeal
         at.stress_slope = in_body<dim>(flow.stress_slope);
         at.ratio        = flow.ratio;
         at.ratio_slope  = flow.ratio_slope;
+        at.deformation  = deformation_of(trial.slopes[i]);
+        at.stress       = in_body<dim>(trial.responses[i].stress);
         n_flow += law.j2 == nullptr || flow.ratio < 1. ? 1. : 0.;
       }
     steps.throw_faults(*law.law, families.nodes().communicator());
@@ -608,8 +619,10 @@ namespace PeriDeal
     for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
       const Shape         &shape = shapes[i];
       const Tensor<2, dim> inverse(shape.inverse),
-        slopes            = sum_of_changes(bonds, ends, values, i, inside, outside) * inverse;
-      const Full   strain = symmetrize(slopes);
+        slopes           = sum_of_changes(bonds, ends, values, i, inside, outside) * inverse;
+      const bool is_full = tangent.any && law.is_full;
+      const Full strain =
+        symmetrize(is_full ? transpose(tangent.flows[i].deformation) * slopes : slopes);
       Full         stress = (tangent.any ? tangent.flows[i].stiffness : shape.elastic) * strain;
       double       c = shape.stabilizer, of_ratio = 0.;
       const double volume = families.nodes().volume(i);
@@ -631,9 +644,12 @@ namespace PeriDeal
                      (6. * shape.shear * (at->stress_slope * strain) + at->ratio_slope * of_square);
           c *= at->ratio;
         }
+      Tensor<2, dim> pull(stress);
+      if (is_full)
+        pull =
+          tangent.flows[i].deformation * pull + slopes * Tensor<2, dim>(tangent.flows[i].stress);
       double *const numbers = tangent.changes.begin() + n * i;
-      write(numbers + at_force,
-            Tensor<2, dim>(volume * (Tensor<2, dim>(stress) * inverse) - c * slopes));
+      write(numbers + at_force, Tensor<2, dim>(volume * (pull * inverse) - c * slopes));
       numbers[at_stiffness] = c;
       if (law.j2 != nullptr)
         numbers[at_slopes] = of_ratio;
@@ -689,10 +705,21 @@ namespace PeriDeal
     NodalTensors<dim> result;
     for (unsigned int i = 0; i < shapes.size(); ++i)
       {
-        result.stress.push_back(in_body<dim>(trial.responses[i].stress));
-        result.strain.push_back(symmetrize(trial.slopes[i]));
+        const Tensor<2, dim>      &slopes   = trial.slopes[i];
+        const StressLaw::Response &response = trial.responses[i];
+        result.stress.push_back(
+          in_body<dim>(law.is_full ? cauchy_stress(slopes, response) : response.stress));
+        result.strain.push_back(law.is_full ? strain_of(slopes) : symmetrize(slopes));
       }
     return result;
+  }
+
+
+  template <int dim>
+  double Correspondence<dim>::out_of_plane(const unsigned int i) const
+  {
+    const StressLaw::Response &response = trial.responses[i];
+    return (law.is_full ? cauchy_stress(trial.slopes[i], response) : response.stress)[2][2];
   }
 
 
@@ -760,10 +787,15 @@ namespace PeriDeal
     const Nodes<dim> &nodes = families.nodes();
     Vector            rows(nodes.partitioner());
     for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
-      const Shape &shape = shapes[i];
-      const double kappa = std::max(shape.stabilizer,
-                                    largest_modulus(shape.elastic) * nodes.volume(i) *
-                                      -smallest_eigenvalue(-shape.inverse));
+      const Shape &shape   = shapes[i];
+      double       modulus = largest_modulus(shape.elastic);
+      if (tangent.any && law.is_full)
+        modulus =
+          largest_modulus(tangent.flows[i].stiffness) * tangent.flows[i].deformation.norm_square() +
+          tangent.flows[i].stress.norm();
+      const double kappa =
+        std::max(shape.stabilizer,
+                 modulus * nodes.volume(i) * -smallest_eigenvalue(-shape.inverse));
       for (std::size_t k = inside.begin; k < inside.end; ++k)
         {
           rows.local_element(i) += 2. * kappa * weights.body[k];

@@ -72,12 +72,7 @@ namespace PeriDeal
     SolidOperator<dim>::require(body);
     refuse_law(body, true, coupled);
     if (coupled)
-      return SolidBondsBesideElements<dim>::require(body);
-    body.elasticity.refuse(
-      body.elasticity.has_full_kinematics(),
-      "Kinematics",
-      "'full' is for 'Models = peridynamics' alone; finite elements have small displacements. "
-      "Leave them out, or use 'linear'.");
+      SolidBondsBesideElements<dim>::require(body);
   }
 
 
@@ -443,7 +438,7 @@ namespace PeriDeal
             }
         }
     };
-    if (!this->forgoes_diagonal)
+    if (!this->explicit_steps.follow)
       mend_diagonal();
     if (law)
       tell_damage(*breaking, law->nodal);
@@ -615,8 +610,9 @@ namespace PeriDeal
   void ElasticElements<dim>::multiply(Vector &y, const Vector &x) const
   {
     // Where explicit steps follow, but for growing cracks, which change the matrix itself.
-    if (this->forgoes_diagonal && !stiffness.was_asked_to_share() && !hanging.any() &&
-        body.domain.has_lattice() && (!zone_bonds || breaking || !this->has_growing_cracks()))
+    if (this->explicit_steps.follow && !cells.is_full() && !stiffness.was_asked_to_share() &&
+        !hanging.any() && body.domain.has_lattice() &&
+        (!zone_bonds || breaking || !this->has_growing_cracks()))
       stiffness.share_rows(nodes, places_on_lattice(positions, body.domain));
     const bool is_known = x.has_ghost_elements();
     if (breaking || stiffness.shares_rows())
@@ -669,8 +665,9 @@ namespace PeriDeal
     if (breaking)
       breaking->bonds.linearize(u);
     // Explicit steps, and the start of a motion, have the body in view that does not flow.
-    if (!cells.stresses || this->forgoes_diagonal ||
-        (!body.elasticity.is_static() && !cells.stresses->has_begun()))
+    const bool starts = !body.elasticity.is_static() && cells.stresses &&
+                        !cells.stresses->has_begun();
+    if (!cells.stresses || (!cells.is_full() && (this->explicit_steps.follow || starts)))
       return;
     stiffness.sparse() = 0.;
     cells.stresses->add_tangent(stiffness, hanging, u);
@@ -681,10 +678,12 @@ namespace PeriDeal
   template <int dim>
   double ElasticElements<dim>::largest_stretch(const Vector &u) const
   {
-    if (!nonlinear() || !breaking)
+    if (!nonlinear() || (!breaking && !cells.is_full()))
       return 0.;
     const WithGhosts ghosts(u);
-    return Utilities::MPI::max(breaking->bonds.linearize(u) - 1., nodes->get_mpi_communicator());
+    return cells.is_full() ?
+             cells.stresses->largest_stiffening(u) :
+             Utilities::MPI::max(breaking->bonds.linearize(u) - 1., nodes->get_mpi_communicator());
   }
 
 
@@ -747,7 +746,7 @@ namespace PeriDeal
   template <int dim>
   Inversion ElasticElements<dim>::inverted(const Vector &u) const
   {
-    if (nonlinear()) // small displacements all the same, of any size
+    if (nonlinear() && !cells.is_full()) // small displacements all the same, of any size
       return {};
     const WithGhosts ghosts(u);
     return find_inverted<dim>(
@@ -783,7 +782,7 @@ namespace PeriDeal
   {
     if (!breaking)
       {
-        if (cells.stresses)
+        if (cells.stresses && !cells.is_full()) // else that may have turned far
           {
             matrix.reinit(pattern(true, true));
             cells.for_each([&](const Cell &, const auto &data) {

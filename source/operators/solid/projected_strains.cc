@@ -11,14 +11,45 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
+  CellProjection<dim>::CellProjection(const FiniteElement<dim> &fe, const unsigned int n_points)
+    : polynomials(Polynomials::Monomial<double>::generate_complete_basis(fe.degree - 1))
+    , basis(n_points, std::vector<double>(polynomials.n()))
+    , weights(n_points)
+    , inverse(polynomials.n(), polynomials.n())
+  {}
+
+
+  template <int dim>
+  void CellProjection<dim>::reinit(const FEValues<dim> &values)
+  {
+    const unsigned int n = polynomials.n();
+    // In the coordinates themselves, not those of the unit cell, so that in distorted cells they
+    // are linear functions, too.
+    const auto       cell   = values.get_cell();
+    const Point<dim> middle = cell->center();
+    const double     size   = cell->diameter();
+    inverse                 = 0.;
+    for (const unsigned int q : values.quadrature_point_indices())
+      {
+        const Point<dim> place((values.quadrature_point(q) - middle) / size);
+        weights[q] = values.JxW(q);
+        for (unsigned int k = 0; k < n; ++k)
+          basis[q][k] = polynomials.compute_value(k, place);
+        for (unsigned int k = 0; k < n; ++k)
+          for (unsigned int l = 0; l < n; ++l)
+            inverse(k, l) += basis[q][k] * basis[q][l] * weights[q];
+      }
+    inverse.gauss_jordan();
+  }
+
+
+  template <int dim>
   ProjectedStrains<dim>::ProjectedStrains(const FiniteElement<dim> &fe, const bool projects)
     : projects(projects)
     , of_cell(fe,
               QGauss<dim>(fe.degree + 1),
               update_values | update_gradients | update_quadrature_points | update_JxW_values)
-    , polynomials(Polynomials::Monomial<double>::generate_complete_basis(fe.degree - 1))
-    , basis(of_cell.n_quadrature_points, std::vector<double>(polynomials.n()))
-    , inverse(polynomials.n(), polynomials.n())
+    , projection(fe, of_cell.n_quadrature_points)
     , means(of_cell.n_quadrature_points * of_cell.dofs_per_cell)
   {}
 
@@ -29,44 +60,15 @@ namespace PeriDeal
     of_cell.reinit(cell);
     if (!projects)
       return;
-    const unsigned int n = polynomials.n();
-    // In the coordinates themselves, not those of the unit cell, so that in distorted cells they
-    // are linear functions, too.
-    const Point<dim> middle = cell->center();
-    const double     size   = cell->diameter();
-    inverse                 = 0.;
-    for (const unsigned int q : of_cell.quadrature_point_indices())
-      {
-        const Point<dim> place((of_cell.quadrature_point(q) - middle) / size);
-        for (unsigned int k = 0; k < n; ++k)
-          basis[q][k] = polynomials.compute_value(k, place);
-        for (unsigned int k = 0; k < n; ++k)
-          for (unsigned int l = 0; l < n; ++l)
-            inverse(k, l) += basis[q][k] * basis[q][l] * of_cell.JxW(q);
-      }
-    inverse.gauss_jordan();
-    std::vector<Tensor<1, dim>> moments(n), coefficients(n);
+    projection.reinit(of_cell);
+    std::vector<Tensor<1, dim>> projected;
     for (unsigned int a = 0; a < of_cell.dofs_per_cell; ++a)
       {
-        for (unsigned int k = 0; k < n; ++k)
-          {
-            moments[k] = Tensor<1, dim>();
-            for (const unsigned int q : of_cell.quadrature_point_indices())
-              moments[k] += basis[q][k] * of_cell.JxW(q) * of_cell.shape_grad(a, q);
-          }
-        for (unsigned int k = 0; k < n; ++k)
-          {
-            coefficients[k] = Tensor<1, dim>();
-            for (unsigned int l = 0; l < n; ++l)
-              coefficients[k] += inverse(k, l) * moments[l];
-          }
-        for (const unsigned int q : of_cell.quadrature_point_indices())
-          {
-            Tensor<1, dim> &mean = means[q * of_cell.dofs_per_cell + a];
-            mean                 = Tensor<1, dim>();
-            for (unsigned int k = 0; k < n; ++k)
-              mean += basis[q][k] * coefficients[k];
-          }
+        projection.find(projected, [&](const unsigned int q) -> const Tensor<1, dim> & {
+          return of_cell.shape_grad(a, q);
+        });
+        for (unsigned int q = 0; q < projected.size(); ++q)
+          means[q * of_cell.dofs_per_cell + a] = projected[q];
       }
   }
 
@@ -126,5 +128,6 @@ namespace PeriDeal
   }
 
 
+  PERIDEAL_INSTANTIATE_CLASS(class CellProjection);
   PERIDEAL_INSTANTIATE_CLASS(class ProjectedStrains);
 } // namespace PeriDeal

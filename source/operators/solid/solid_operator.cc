@@ -78,6 +78,9 @@ namespace PeriDeal
     , loads_vary(loads_depend_on_time(body))
     , contact(std::make_unique<SolidContact>())
   {
+    constexpr unsigned int soon = 5; // steps within which soft bodies may deform much
+    if (body.material.law.kind == SolidLaw::hyperelastic)
+      this->explicit_steps.between_looks = soon;
     if (of_nodes)
       set_layout(of_nodes);
   }

@@ -14,6 +14,7 @@
 #include <set>
 
 #include "inversion.h"
+#include "large_deformation.h"
 #include "state_contact.h"
 
 // What the state-based operator does when bonds have broken.
@@ -221,6 +222,13 @@ namespace PeriDeal
   template <int dim>
   double StateOperator<dim>::largest_stretch(const Vector &u) const
   {
+    if (solid.flows() && solid.kinematics.is_full())
+      {
+        double largest = 0.;
+        for (const SymmetricTensor<2, dim> &strain : solid.correspondence()->tensors(u).strain)
+          largest = std::max(largest, stiffening_of(strain));
+        return Utilities::MPI::max(largest, solid.families.nodes().communicator());
+      }
     if (!nonlinear() || solid.flows()) // which makes no body stiffer
       return 0.;
     u.update_ghost_values();
@@ -610,7 +618,7 @@ namespace PeriDeal
       solid.renew_gradients(solid.rows.body.nodes);
     if (of_nodes && !solid.ends.images && !solid.correspondence())
       mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
-    else if (!of_nodes || !this->forgoes_diagonal)
+    else if (!of_nodes || !this->explicit_steps.follow)
       find_stiffness_diagonal(solid, stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
     if (solid.thermal.any())

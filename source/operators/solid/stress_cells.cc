@@ -5,6 +5,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
+#include <perideal/base/worst_trip.h>
 #include <perideal/mesh/node_keys.h>
 #include <perideal/operators/solid/stress_cells.h>
 
@@ -23,12 +24,14 @@ namespace PeriDeal
     PlacedStressLaw<dim> law = stress_law_of(body);
     if (!law.law)
       return nullptr;
-    // A body that does not flow is what it is without the projection.
-    const bool projects = body.material.law.kind != SolidLaw::linear &&
+    Kinematics kinematics;
+    kinematics.is_full = body.elasticity.has_full_kinematics();
+    // A linear body is what it is without the projection.
+    kinematics.projects = body.material.law.kind != SolidLaw::linear &&
                           stress_state_of(dim, body.elasticity.plane) != StressState::plane_stress;
     return std::make_unique<StressCells>(dofs,
                                          std::move(law),
-                                         projects,
+                                         kinematics,
                                          cracks,
                                          StressSteps::of_scene(body));
   }
@@ -37,7 +40,7 @@ namespace PeriDeal
   template <int dim>
   StressCells<dim>::StressCells(const DoFHandler<dim> &dofs,
                                 PlacedStressLaw<dim>   law,
-                                const bool             projects,
+                                const Kinematics      &kinematics,
                                 const CutCells<dim>   &cracks,
                                 const StressSteps     &steps)
     : dofs(dofs)
@@ -45,12 +48,17 @@ namespace PeriDeal
     , cracks(cracks)
     , first(dofs.get_triangulation().n_active_cells(), 0)
     , steps(steps)
-    , at{ProjectedStrains<dim>(dofs.get_fe(), projects),
+    , at{ProjectedStrains<dim>(dofs.get_fe(), kinematics.projects && !kinematics.is_full),
+         nullptr,
          std::vector<types::global_dof_index>(dofs.get_fe().n_dofs_per_cell()),
          dealii::Vector<double>(dim * dofs.get_fe().n_dofs_per_cell()),
          {}}
   {
     at.points.resize(at.strains.values().n_quadrature_points);
+    if (kinematics.is_full)
+      at.deformed = std::make_unique<DeformedStrains<dim>>(dofs.get_fe(),
+                                                           at.points.size(),
+                                                           kinematics.projects);
     for (LawPoint &point : at.points)
       point.state.resize(of_points->n_state());
     std::size_t n_points = 0;
@@ -71,6 +79,18 @@ namespace PeriDeal
 
 
   template <int dim>
+  bool StressCells<dim>::holds(const unsigned int q) const
+  {
+    const double ratio = at.deformed->volume_ratio(q);
+    if (ratio > 0.)
+      return true;
+    keep_lower(inverted,
+               turned_inside_out(at.strains.values().quadrature_point(q), ratio, steps.now));
+    return false;
+  }
+
+
+  template <int dim>
   void StressCells<dim>::look_at(const Cell   &cell,
                                  const Vector *u,
                                  const double *accepted,
@@ -81,6 +101,8 @@ namespace PeriDeal
     at.u = 0.;
     for (unsigned int i = 0; u != nullptr && i < at.u.size(); ++i)
       at.u(i) = (*u)(dim * at.nodes[i / dim] + i % dim);
+    if (at.deformed)
+      at.deformed->reinit(at.strains.values(), at.u);
     StressLaw::Trial trial;
     trial.length           = std::pow(cell->measure(), 1. / dim) / dofs.get_fe().degree;
     trial.element          = cell->global_active_cell_index();
@@ -90,11 +112,17 @@ namespace PeriDeal
         LawPoint &point = at.points[q];
         point.weight =
           (u == nullptr ? 1. : cracks.kept_of_removed(cell)) * at.strains.values().JxW(q);
-        trial.strain     = at.strains.strain(q, at.u);
         trial.parameters = of_point + q * of_points->n_parameters();
         trial.state      = accepted + q * of_points->n_state();
         trial.point      = q;
-        point.response   = steps.update(*of_points,
+        if (at.deformed && (point.weight == 0. || !holds(q)))
+          {
+            point.response = StressLaw::Response();
+            point.tangent  = 0.;
+            continue;
+          }
+        trial.strain   = at.deformed ? at.deformed->strain(q) : at.strains.strain(q, at.u);
+        point.response = steps.update(*of_points,
                                       trial,
                                       point.state.data(),
                                       with_tangents ? &point.tangent : nullptr,
@@ -134,7 +162,8 @@ namespace PeriDeal
         const LawPoint &point = at.points[q];
         for (unsigned int i = 0; i < n; ++i)
           {
-            const Strain strain = at.strains.of_unknown(i / dim, i % dim, q);
+            const Strain strain = at.deformed ? at.deformed->of_unknown(i / dim, i % dim, q) :
+                                                at.strains.of_unknown(i / dim, i % dim, q);
             const Strain stress = point.weight * (point.tangent * strain);
             for (unsigned int k = 0; k < n_parts; ++k)
               {
@@ -145,6 +174,12 @@ namespace PeriDeal
           }
         strains.mTmult(matrix, stresses, true);
       }
+    if (!at.deformed || u == nullptr)
+      return;
+    std::vector<Strain> weighted;
+    for (const LawPoint &point : at.points)
+      weighted.push_back(point.weight * point.response.stress);
+    at.deformed->add_geometric(matrix, weighted);
   }
 
 
@@ -174,18 +209,21 @@ namespace PeriDeal
                                      const double             t) const
   {
     steps.now = t;
+    inverted  = Trip();
     y         = 0.;
     std::vector<Tensor<1, dim>> forces(at.nodes.size());
     for_each(u, [&](const Cell &, const std::vector<LawPoint> &points) {
       std::fill(forces.begin(), forces.end(), Tensor<1, dim>());
       for (unsigned int q = 0; q < points.size(); ++q)
         for (unsigned int a = 0; a < forces.size(); ++a)
-          forces[a] += points[q].weight * at.strains.force(a, q, points[q].response.stress);
+          forces[a] += points[q].weight * at.force(a, q, points[q].response.stress);
       for (unsigned int a = 0; a < forces.size(); ++a)
         for (unsigned int d = 0; d < dim; ++d)
           y(dim * at.nodes[a] + d) += forces[a][d];
     });
     throw_faults();
+    if (at.deformed)
+      throw_lowest_if_any(dofs.get_communicator(), inverted);
     y.compress(VectorOperation::add);
     hanging.condense(y);
     hanging.set(y, 0.);
@@ -206,12 +244,31 @@ namespace PeriDeal
 
 
   template <int dim>
+  double StressCells<dim>::largest_stiffening(const Vector &u) const
+  {
+    double largest = 0.;
+    if (at.deformed)
+      for_each(u, [&](const Cell &, const std::vector<LawPoint> &points) {
+        for (unsigned int q = 0; q < points.size(); ++q)
+          if (points[q].weight > 0. && at.deformed->volume_ratio(q) > 0.)
+            largest = std::max(largest, at.deformed->stiffening(q));
+      });
+    return Utilities::MPI::max(largest, dofs.get_communicator());
+  }
+
+
+  template <int dim>
   double StressCells<dim>::accept(const Vector &u, const double t)
   {
     double dissipated = 0.;
     begun             = true;
     steps.now         = t;
-    bool changes      = false;
+    if (of_points->n_state() == 0 && !of_points->may_fail()) // nothing to remember or dissipate
+      {
+        steps.accept(t, false);
+        return 0.;
+      }
+    bool changes = false;
     for_each(u, [&](const Cell &cell, const std::vector<LawPoint> &points) {
       auto next = states.begin() + first_of(cell) * of_points->n_state();
       for (const LawPoint &point : points)
@@ -249,6 +306,8 @@ namespace PeriDeal
     };
     archive.exchange("begun", begun);
     steps.exchange(archive);
+    if (n_values == 0)
+      return;
     for_each_cell([&](auto value, auto state) { std::copy_n(state, n_values, value); });
     archive.exchange("states of points", values, node_keys(cells));
     for_each_cell([&](auto value, auto state) { std::copy_n(value, n_values, state); });

@@ -2,13 +2,16 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/instantiate.h>
+#include <perideal/base/place_text.h>
 #include <perideal/laws/j2_plasticity.h>
 #include <perideal/laws/linear_stress.h>
+#include <perideal/laws/neo_hooke.h>
 #include <perideal/laws/user_stress.h>
 #include <perideal/operators/solid/stress_laws.h>
 #include <perideal/scene/orthotropy.h>
 #include <perideal/scene/user_properties.h>
 
+#include <cmath>
 #include <map>
 
 namespace PeriDeal
@@ -28,6 +31,21 @@ namespace PeriDeal
                               material.law.hardening.value(p));
       };
       return {std::move(law), parameters};
+    }
+
+
+    template <int dim>
+    PlacedStressLaw<dim> neo_hooke(const BodyParameters<dim> &body)
+    {
+      return {std::make_unique<const NeoHooke>(stress_state_of(dim, body.elasticity.plane)),
+              [&material = body.material](const Point<dim> &p) {
+                const Moduli moduli = material.moduli(p);
+                if (!std::isfinite(moduli.bulk))
+                  report_formula_error(
+                    "Entry " + material.where("Poisson ratio") + ", at " + place_text(p) +
+                    ": 0.5, but 'Law = hyperelastic' has a finite bulk modulus.");
+                return std::vector<double>{moduli.bulk, moduli.shear};
+              }};
     }
 
 
@@ -63,7 +81,9 @@ namespace PeriDeal
     const std::map<SolidLaw, PlacedStressLaw<dim> (*)(const BodyParameters<dim> &)> &makers()
     {
       static const std::map<SolidLaw, PlacedStressLaw<dim> (*)(const BodyParameters<dim> &)> list =
-        {{SolidLaw::plastic, j2_plasticity<dim>}, {SolidLaw::user, user_stress<dim>}};
+        {{SolidLaw::plastic, j2_plasticity<dim>},
+         {SolidLaw::hyperelastic, neo_hooke<dim>},
+         {SolidLaw::user, user_stress<dim>}};
       return list;
     }
   } // namespace
@@ -72,9 +92,11 @@ namespace PeriDeal
   template <int dim>
   PlacedStressLaw<dim> stress_law_of(const BodyParameters<dim> &body)
   {
-    if (body.material.law.kind == SolidLaw::linear && !body.material.law.orthotropy.young.empty())
+    const Material::Law &law = body.material.law;
+    if (law.kind == SolidLaw::linear &&
+        (!law.orthotropy.young.empty() || body.elasticity.has_full_kinematics()))
       return linear_stress_law(body);
-    const auto found = makers<dim>().find(body.material.law.kind);
+    const auto found = makers<dim>().find(law.kind);
     return found == makers<dim>().end() ? PlacedStressLaw<dim>() : found->second(body);
   }
 

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/base/diverged.h>
 #include <perideal/laws/j2_plasticity.h>
 #include <perideal/operators/solid/bond_table.h>
 #include <perideal/operators/solid/family_forces.h>
@@ -20,9 +21,9 @@ namespace PeriDeal
 
 
   /**
-   * State-based correspondence (Silling et al. 2007) with small strains: nodes have a displacement
-   * gradient, of which a law of stresses makes the forces of their bonds. With W = V_i V_j omega f
-   * of the bonds xi of node i, du = u_j - u_i,
+   * State-based correspondence (Silling et al. 2007): nodes have a displacement gradient, of which
+   * a law of stresses makes the forces of their bonds. With W = V_i V_j omega f of the bonds xi of
+   * node i, du = u_j - u_i,
    *
    *   M_i = sum W xi xi^T,  G_i = (sum W du xi^T) M_i^-1,  sigma_i of the strain sym G_i,
    *
@@ -40,6 +41,11 @@ namespace PeriDeal
    * bear more and more by its z. B = 3 mu c_i/V_i sum W |z_e|^2, of z_e = z - z_p, flow leaves r
    * z_e, and z_p, which each end of a bond has its own of, grows by (1 - r) z_e. Both stand in the
    * rows of both ends, that of the row's own node first, both along the row's own bond.
+   *
+   * With full kinematics the law is one of large deformations (StressLaw), and P = F S stands for
+   * sigma, F = 1 + G. Then z = (xi + du) - F xi is what the deformed bonds have beside F; no
+   * rotation changes |z|. Where a node is inside out, all that is collective throws Diverged
+   * (`inversion`).
    */
   template <int dim>
   class Correspondence : public FamilyForces<dim>
@@ -72,7 +78,7 @@ namespace PeriDeal
     void   linearize(const Vector &u) override;
     void   forget_tangent() override
     {
-      tangent.any = false;
+      tangent.any = tangent.any && law.is_full; // a deformed body may be stiffer
     }
 
     /** Of these owned nodes alone. Collective. */
@@ -81,7 +87,10 @@ namespace PeriDeal
     /** As YieldingFamilies::plastic_work(). Collective. */
     double plastic_work(const Vector &u) const;
 
-    /** Stresses of the law and strains sym G of the owned nodes. Collective. */
+    /**
+     * Stresses of the law and strains sym G of the owned nodes, with full kinematics Cauchy's
+     * stresses and the strains of Green and Lagrange. Collective.
+     */
     NodalTensors<dim> tensors(const Vector &u) const;
 
     /** mu of an owned node. */
@@ -91,10 +100,7 @@ namespace PeriDeal
     }
 
     /** In two dimensions, the stress of an owned node out of the plane, at the last tensors(). */
-    double out_of_plane(const unsigned int i) const
-    {
-      return trial.responses[i].stress[2][2];
-    }
+    double out_of_plane(const unsigned int i) const;
 
     /** What StressLaw::shown() names, of the owned nodes at the last accepted step. */
     std::vector<std::pair<std::string, std::vector<double>>> shown() const;
@@ -108,7 +114,8 @@ namespace PeriDeal
     /**
      * By node, no less than the sums of the rows of the elastic K, as one of numbers: what G does
      * is no stiffer than bonds that are kappa W stiff in all directions, kappa = max(c, lambda V
-     * |M^-1|) with the largest eigenvalue lambda of the stiffness. Collective.
+     * |M^-1|) with the largest eigenvalue lambda of the stiffness, with full kinematics |F|^2 times
+     * that and |S| of the last linearize(). Collective.
      */
     Vector row_sums() const;
 
@@ -183,7 +190,7 @@ namespace PeriDeal
     {
       std::unique_ptr<const StressLaw> law;
       const J2Plasticity              *j2        = nullptr; // if it is that
-      bool                             is_linear = false;
+      bool                             is_linear = false, is_full = false;
       std::vector<double>              parameters, states;
     } law;
 
@@ -198,6 +205,7 @@ namespace PeriDeal
       std::vector<dealii::Tensor<2, dim>> slopes;
       std::vector<double>                 squares, ratios, states; // sum of W |z_e|^2; next
       Changes                             changes;                 // du, where the law flows
+      Trip                                inverted;                // the worst one
     } mutable trial;
 
     StepWork    accepted;
@@ -209,6 +217,10 @@ namespace PeriDeal
       dealii::SymmetricTensor<4, dim> stiffness;
       Full                            stress_slope;
       double                          ratio = 1., ratio_slope = 0.;
+
+      // With full kinematics.
+      dealii::Tensor<2, dim> deformation; // F
+      Full                   stress;      // S
     };
 
     struct

@@ -142,6 +142,12 @@ namespace PeriDeal
         stresses->throw_faults();
     }
 
+    /** Deformations are large. */
+    bool is_full() const
+    {
+      return stresses && stresses->is_full();
+    }
+
     /** Data::shear is to be made. */
     bool with_shear = false;
 

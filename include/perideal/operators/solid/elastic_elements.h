@@ -37,6 +37,8 @@ namespace PeriDeal
    *
    * With a law of stresses at quadrature points (StressCells) forces and energies are those of the
    * law, and K is its tangent; preconditioners are made for the one before anything has happened.
+   * Full kinematics, which have large deformations, are for such laws; the linear law is then one,
+   * too (St. Venant and Kirchhoff's), and preconditioners are made for the tangent as it is.
    *
    * Where explicit steps follow rows of the matrix share their values (ElementMatrix).
    *
@@ -81,7 +83,7 @@ namespace PeriDeal
 
     bool nonlinear() const override
     {
-      return (cells.stresses && body.material.law.kind != SolidLaw::linear) ||
+      return cells.is_full() || (cells.stresses && body.material.law.kind != SolidLaw::linear) ||
              (law && !law->nodal.steps->is_linear());
     }
 

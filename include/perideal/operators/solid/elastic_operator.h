@@ -228,8 +228,11 @@ namespace PeriDeal
       return {};
     }
 
-    /** Explicit steps follow: diagonal() and surrogate() need not know which bonds break. */
-    bool forgoes_diagonal = false;
+    struct
+    {
+      bool         follow        = false; // diagonal(), surrogate() need not know which bonds break
+      unsigned int between_looks = 25;    // how many until one asks for largest_stretch() again
+    } explicit_steps;
 
     /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */
     bool may_release_energy() const

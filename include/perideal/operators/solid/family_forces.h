@@ -10,7 +10,7 @@ namespace PeriDeal
 {
   /**
    * Forces that nodes make of their families as a whole, in place of those that bonds make one by
-   * one (SolidSums, BondForces). Kinematics are linear.
+   * one (SolidSums, BondForces).
    *
    * Trials leave nothing behind until accept(). Ghosts of displacements need not be up to date.
    */

@@ -14,16 +14,55 @@
 namespace PeriDeal
 {
   /**
+   * Numbers at the Gauss points of one cell of finite elements Qp replaced by the polynomial of
+   * degree p - 1 in the coordinates that is nearest to them in the mean square over the cell: their
+   * mean for p = 1, a linear function for p = 2. Not collective.
+   */
+  template <int dim>
+  class CellProjection
+  {
+  public:
+    CellProjection(const dealii::FiniteElement<dim> &fe, const unsigned int n_points);
+
+    /** @param values of the cell, with its quadrature points and weights; to outlive projections */
+    void reinit(const dealii::FEValues<dim> &values);
+
+    /** @param of the number at a point */
+    template <typename Number, typename At>
+    void find(std::vector<Number> &projected, const At &of) const
+    {
+      const unsigned int  n = polynomials.n();
+      std::vector<Number> moments(n), coefficients(n);
+      for (unsigned int k = 0; k < n; ++k)
+        for (unsigned int q = 0; q < basis.size(); ++q)
+          moments[k] += basis[q][k] * weights[q] * of(q);
+      for (unsigned int k = 0; k < n; ++k)
+        for (unsigned int l = 0; l < n; ++l)
+          coefficients[k] += inverse(k, l) * moments[l];
+      projected.assign(basis.size(), Number());
+      for (unsigned int q = 0; q < basis.size(); ++q)
+        for (unsigned int k = 0; k < n; ++k)
+          projected[q] += basis[q][k] * coefficients[k];
+    }
+
+  private:
+    const dealii::PolynomialSpace<dim> polynomials;
+    std::vector<std::vector<double>>   basis; // by point
+    std::vector<double>                weights;
+    dealii::FullMatrix<double>         inverse;
+  };
+
+
+  /**
    * Strains at the Gauss points of one cell of finite elements Qp, as three-dimensional tensors. A
    * body that flows keeps its volume, which the dilatations of all (p + 1)^dim points together
    * would not let it do (locking). So these are projected (B-bar): in
    *
    *     eps = sym(grad u) + (theta_bar - div u)/3 I,
    *
-   * theta_bar is the polynomial of degree p - 1 in the coordinates that is nearest to div u in the
-   * mean square over the cell: its mean for p = 1, a linear function for p = 2. These are the
-   * elements Q1/P0 and Q2/P1 of a pressure that is discontinuous. Strains that are uniform stay as
-   * they are. The change out of a plane of strain belongs to it. Not collective.
+   * theta_bar is div u as CellProjection has it. These are the elements Q1/P0 and Q2/P1 of a
+   * pressure that is discontinuous. Strains that are uniform stay as they are. The change out of a
+   * plane of strain belongs to it. Not collective.
    */
   template <int dim>
   class ProjectedStrains
@@ -66,9 +105,7 @@ namespace PeriDeal
 
     const bool                          projects;
     dealii::FEValues<dim>               of_cell;
-    const dealii::PolynomialSpace<dim>  polynomials;
-    std::vector<std::vector<double>>    basis; // by point
-    dealii::FullMatrix<double>          inverse;
+    CellProjection<dim>                 projection;
     std::vector<dealii::Tensor<1, dim>> means;
   };
 } // namespace PeriDeal

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <perideal/base/archive.h>
+#include <perideal/base/diverged.h>
 #include <perideal/operators/parts/cut_cells.h>
 #include <perideal/operators/parts/element_matrix.h>
+#include <perideal/operators/solid/deformed_strains.h>
 #include <perideal/operators/solid/projected_strains.h>
 #include <perideal/operators/solid/stress_laws.h>
 #include <perideal/operators/solid/stress_steps.h>
@@ -17,9 +19,10 @@ namespace PeriDeal
 {
   /**
    * The cells of finite elements Qp of a body with a law of stresses, one at a time: what the law
-   * makes of the strains at quadrature points (ProjectedStrains), and the states of these, which
-   * are those of the last step that was accepted. Ghosts of displacements are up to date. Cells
-   * that a crack cuts carry what it leaves of them. Not collective unless stated.
+   * makes of the strains at quadrature points (ProjectedStrains, where deformations are large
+   * DeformedStrains), and the states of these, which are those of the last step that was accepted.
+   * Ghosts of displacements are up to date. Cells that a crack cuts carry what it leaves of them.
+   * Not collective unless stated.
    *
    * The law is asked as StressSteps says, the time of now being that for which forces were found
    * last: all that is collective throws faults, others have to ask throw_faults().
@@ -44,13 +47,16 @@ namespace PeriDeal
                                                  const BodyParameters<dim>     &body,
                                                  const CutCells<dim>           &cracks);
 
-    /**
-     * @param projects the dilatation (ProjectedStrains)
-     * @param cracks   like @p dofs to outlive this
-     */
+    struct Kinematics
+    {
+      bool projects = false; // the dilatation
+      bool is_full  = false; // deformations are large
+    };
+
+    /** @param cracks like @p dofs to outlive this */
     StressCells(const dealii::DoFHandler<dim> &dofs,
                 PlacedStressLaw<dim>           law,
-                const bool                     projects,
+                const Kinematics              &kinematics,
                 const CutCells<dim>           &cracks,
                 const StressSteps             &steps = {});
 
@@ -59,8 +65,21 @@ namespace PeriDeal
       return *of_points;
     }
 
+    /** Deformations are large. */
+    bool is_full() const
+    {
+      return at.deformed != nullptr;
+    }
+
     /** The points of an own cell in the state u, until the next call. */
     const std::vector<LawPoint> &points_of(const Cell &cell, const Vector &u) const;
+
+    /** Cauchy's stress at a point of the cell that was looked at last. */
+    StressLaw::Tensor stress_at(const unsigned int q) const
+    {
+      const StressLaw::Response &response = at.points[q].response;
+      return at.deformed ? at.deformed->cauchy(q, response) : response.stress;
+    }
 
     /** Call visit(cell, points) for all own cells. */
     template <typename Visit>
@@ -83,7 +102,8 @@ namespace PeriDeal
 
     /**
      * Forces of all cells at time t, zero on hanging nodes; of a law that may fail also where u is
-     * zero. Collective.
+     * zero. Where large deformations have turned a point inside out it throws the Diverged of the
+     * worst one (`inversion`). Collective.
      */
     void find_forces(Vector                  &y,
                      const HangingNodes<dim> &hanging,
@@ -92,6 +112,9 @@ namespace PeriDeal
 
     /** Stored by all cells. Collective. */
     double energy(const Vector &u) const;
+
+    /** Large deformations: the most of DeformedStrains::stiffening(); else 0. Collective. */
+    double largest_stiffening(const Vector &u) const;
 
     /** A state has been accepted. */
     bool has_begun() const
@@ -124,6 +147,9 @@ namespace PeriDeal
                  const double *accepted,
                  const bool    with_tangents) const;
 
+    /** Large deformations: whether the point that is looked at is as one may be; else keeps it. */
+    bool holds(const unsigned int q) const;
+
     const dealii::DoFHandler<dim>         &dofs;
     const std::unique_ptr<const StressLaw> of_points;
     const CutCells<dim>                   &cracks;
@@ -131,12 +157,21 @@ namespace PeriDeal
     std::vector<double>                    all_parameters, states;
     bool                                   begun = false;
 
-    StressSteps steps;
+    StressSteps  steps;
+    mutable Trip inverted; // the point that is turned inside out most
 
     /** The cell that is looked at. */
     struct Looked
     {
-      ProjectedStrains<dim>                        strains;
+      dealii::Tensor<1, dim> force(const unsigned int       a,
+                                   const unsigned int       q,
+                                   const StressLaw::Tensor &stress) const
+      {
+        return deformed ? deformed->force(a, q, stress) : strains.force(a, q, stress);
+      }
+
+      ProjectedStrains<dim>                        strains;  // of large deformations the points
+      std::unique_ptr<DeformedStrains<dim>>        deformed; // null: they are small
       std::vector<dealii::types::global_dof_index> nodes;
       dealii::Vector<double>                       u;
       std::vector<LawPoint>                        points;

@@ -27,8 +27,8 @@ namespace PeriDeal
 
   /**
    * The law of the scene where it is one of stresses (`Law` in section `Material`), the linear one
-   * of an orthotropic body among them; none where it is linear and isotropic or one of bonds. The
-   * body has to outlive it. Collective. Throws UserError.
+   * of an orthotropic body or of full kinematics among them; none where it is linear else or one of
+   * bonds. The body has to outlive it. Collective. Throws UserError.
    */
   template <int dim>
   PlacedStressLaw<dim> stress_law_of(const BodyParameters<dim> &body);

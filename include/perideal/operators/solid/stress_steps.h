@@ -4,6 +4,8 @@
 #pragma once
 
 #include <perideal/base/archive.h>
+#include <perideal/base/diverged.h>
+#include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
 #include <perideal/laws/stress_law.h>
 #include <perideal/scene/body_parameters.h>
@@ -86,4 +88,23 @@ namespace PeriDeal
     unsigned int        n = 0; // accepted ones in which something has happened, or time has passed
     mutable std::string fault; // of this process
   };
+
+
+  /** A point of the body whose volume large deformations have made so many times what it was. */
+  template <int dim>
+  Trip turned_inside_out(const dealii::Point<dim> &place, const double ratio, const double time)
+  {
+    Trip found;
+    found.monitor = "inversion";
+    found.value   = ratio;
+    found.bound   = 0.;
+    found.time    = time;
+    found.found =
+      "The displacements turn the body inside out at " + place_text(place) +
+      ". The loads change by too much at once, or are more than the body bears: choose a smaller 'Time step' in section 'Time', "
+      "let loads that jump begin at 0 (formulas of t), or use finer 'Cells' in section 'Domain'.";
+    for (unsigned int d = 0; d < dim; ++d)
+      found.place.push_back(place[d]);
+    return found;
+  }
 } // namespace PeriDeal
