@@ -40,7 +40,6 @@ WIDER = {
     "include/perideal/scene/material.h": {"Material": (15, 13, 0)},
     "include/perideal/simulation/simulation.h": {"Simulation": (45, 16, 0)},
     "include/perideal/solvers/motion_stepper.h": {"MotionStepper": (29, 17, 4)},
-    "include/perideal/solvers/slow_loading.h": {"SlowLoading": (17, 16, 0)},
     "source/operators/lattice/state_lattice.h": {"StateLattice": (13, 13, 0)},
     "source/solvers/implicit_stepper.h": {"ImplicitStepper": (19, 19, 2)},
     "source/solvers/rkc2.cc": {"RKC2": (19, 15, 0)},

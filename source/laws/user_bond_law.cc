@@ -15,8 +15,8 @@ namespace PeriDeal
   {
     // What nobody writes by chance, behind the states: so many numbers that it is seen where a law
     // has a few more.
-    constexpr double       guard    = -6.02214076e23;
-    constexpr unsigned int n_guards = 64;
+    constexpr double       untouched = -6.02214076e23;
+    constexpr unsigned int n_behind  = 64;
   } // namespace
 
 
@@ -26,7 +26,7 @@ namespace PeriDeal
     : library(std::move(library))
     , properties(std::move(properties))
     , n_states(n_states)
-    , next(n_states + n_guards)
+    , next(n_states + n_behind)
   {
     const std::vector<double> at_first(n_states + 1, 0.); // an address, at least
     BondValues                at_rest{0., 1.};
@@ -42,7 +42,9 @@ namespace PeriDeal
 
   std::string UserBondLaw::fault_of(const perideal_bond_answer &answer, const int status) const
   {
-    if (std::any_of(next.begin() + n_states, next.end(), [](const double x) { return x != guard; }))
+    if (std::any_of(next.begin() + n_states, next.end(), [](const double x) {
+          return x != untouched;
+        }))
       return "writes more states than 'User states' in section 'Material', which is " +
              std::to_string(n_states) + ". Give as many as it has";
     if (status != 0)
@@ -75,7 +77,7 @@ namespace PeriDeal
                              static_cast<int>(n_states),
                              history};
     std::copy_n(history, n_states, next.begin());
-    std::fill(next.begin() + n_states, next.end(), guard);
+    std::fill(next.begin() + n_states, next.end(), untouched);
     std::string thrown;
     int         status = 0;
     try // it may be C++

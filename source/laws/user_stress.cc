@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/base/user_error.h>
+#include <perideal/base/diverged.h>
 #include <perideal/laws/user_stress.h>
 
 #include <algorithm>
@@ -312,8 +312,9 @@ namespace PeriDeal
     text << " on by ";
     list(call.strains.change, call.counts.all);
     text << '.';
-    AssertThrow(false, UserError(text.str()));
-    std::terminate();
+    if (call.moment.ratio < 1.)
+      throw Diverged(text.str(), "law", call.moment.ratio, 1., trial.time);
+    throw UserError(text.str());
   }
 
 

@@ -458,7 +458,14 @@ namespace PeriDeal
   void SolidProblem<dim>::note_end(const RunContext &context) const
   {
     if (loading && !scene.time.steady)
-      context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations");
+      {
+        const unsigned int n_halved = loading->n_divisions();
+        context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations" +
+                              (n_halved > 0 ?
+                                 ", load steps were halved " + std::to_string(n_halved) +
+                                   (n_halved > 1 ? " times" : " time") :
+                                 ""));
+      }
     note_end_of_solid(*this, context);
   }
 

@@ -56,6 +56,8 @@ namespace PeriDeal
           }
         catch (const Diverged &failure)
           {
+            if (failure.trip.monitor == "law") // which says all of it
+              throw;
             std::ostringstream message;
             message
               << "'Solver = newton' in section 'Elasticity' found no equilibrium at t = " << t

@@ -188,11 +188,10 @@ namespace PeriDeal
     , options(options)
     , work_of_forces(op)
   {
-    for (Vector *v : {&last, &before.change, &unbalanced, &scratch})
+    for (Vector *v : {&before.state, &before.change, &memory.unbalanced, &memory.scratch})
       op.initialize_vector(*v);
     if (options.breaks_in_motion && op.brittle())
       motion.emplace(op);
-    divides = options.divides_steps && op.brittle();
   }
 
 
@@ -206,15 +205,15 @@ namespace PeriDeal
         // What contact has changed by then cannot be undone.
         const auto solve_to = [&](const double goal, const bool is_as_before) {
           const LeavableStep leavable(may_be_left && is_as_before);
-          iterations += solver->solve(u, t, goal);
+          counts.iterations += solver->solve(u, t, goal);
         };
         find_touching(op,
                       *solver,
                       options.tolerance,
                       u,
                       t,
-                      size,
-                      unbalanced,
+                      reached.size,
+                      memory.unbalanced,
                       !before.any,
                       solve_to);
       }
@@ -222,8 +221,8 @@ namespace PeriDeal
       {
         if (n_broken == 0)
           throw;
-        op.mechanical_loads(scratch, t);
-        const bool         loaded = scratch.linfty_norm() > 0.;
+        op.mechanical_loads(memory.scratch, t);
+        const bool         loaded = memory.scratch.linfty_norm() > 0.;
         std::ostringstream message;
         message
           << "No equilibrium was found at t = " << t << ", after " << n_broken
@@ -232,7 +231,7 @@ namespace PeriDeal
                 "Nothing may bear the loads any more: pull by 'Displacement' in section 'Boundary conditions' in place of 'Traction', or use 'Solver = dynamics' in section 'Elasticity'. " :
                 "Try a smaller 'Time step' in section 'Time', or another 'Solver' or 'Preconditioner' in section 'Elasticity'. ")
           << "What the solver said: " << failure.message();
-        u                          = last;
+        u                          = before.state;
         const auto *const diverged = dynamic_cast<const Diverged *>(&failure);
         constexpr double  none     = std::numeric_limits<double>::quiet_NaN();
         throw Diverged(message.str(),
@@ -254,11 +253,11 @@ namespace PeriDeal
     if (inverted.n_nodes == 0)
       return;
     if (!found.may_wait())
-      u = last;
+      u = before.state;
     std::ostringstream message;
     message << "In the equilibrium that '" << solver->name() << "' has found at t = " << t << ' '
             << inverted_text(inverted);
-    found.add(inversion_error(message.str(), inverted, t), steps);
+    found.add(inversion_error(message.str(), inverted, t), counts.steps);
   }
 
 
@@ -271,7 +270,7 @@ namespace PeriDeal
     if (op.break_bonds(u, t, share) == 0)
       return false;
     if (moves)
-      iterations += motion->run(u, t);
+      counts.iterations += motion->run(u, t);
     return true;
   }
 
@@ -281,20 +280,20 @@ namespace PeriDeal
     if (!op.may_release_energy())
       return;
     if (!breaking.is_open)
-      breaking = {t, op.energy(u), false, true, breaking.goal, breaking.most};
+      breaking = {t, op.energy(u), false, true, breaking.goal, breaking.most, breaking.division};
     bool grown = op.grow_cracks(u, t);
     if (grown && motion)
       motion->operator_changed();
     // Nodes join a zone until none does; only then bonds break.
-    for (scratch = u; grown || op.widen_zone(u) || break_bonds(u, t); grown = false)
+    for (memory.scratch = u; grown || op.widen_zone(u) || break_bonds(u, t); grown = false)
       {
         breaking.any = true;
         solver->operator_changed();
         solve(u, t);
-        scratch.sadd(-1., 1., u);
+        memory.scratch.sadd(-1., 1., u);
         // Supports are at rest.
-        const double gain = scratch * work_of_forces.loads(), left = op.energy(u);
-        scratch = u;
+        const double gain = memory.scratch * work_of_forces.loads(), left = op.energy(u);
+        memory.scratch = u;
         so_far.work += gain;
         so_far.dissipated += breaking.energy + gain - left;
         breaking.energy = left;
@@ -302,45 +301,45 @@ namespace PeriDeal
           after_round(t);
       }
     breaking.is_open = false;
-    if (divides)
+    if (options.divides_steps && op.brittle())
       breaking.most = op.stretch_over_critical(u);
     if (!breaking.any)
       return;
-    op.unbalanced(unbalanced, u, t);
-    work_of_forces.begin(unbalanced, t);
+    op.unbalanced(memory.unbalanced, u, t);
+    work_of_forces.begin(memory.unbalanced, t);
   }
 
 
   void SlowLoading::begin(Vector &u, const double t)
   {
     take_accepted_residual(); // of a run that ended in between
-    size = start_statics(op, u, t, options);
-    last = u;
+    reached.size = start_statics(op, u, t, options);
+    before.state = u;
     solve(u, t);
     accept(op, u, t, so_far);
     so_far.start = op.energy(u);
-    op.unbalanced(unbalanced, u, t);
-    work_of_forces.begin(unbalanced, t);
+    op.unbalanced(memory.unbalanced, u, t);
+    work_of_forces.begin(memory.unbalanced, t);
     change_bonds(u, t, {});
-    accept(op, u, now = t, so_far);
+    accept(op, u, reached.time = t, so_far);
   }
 
 
-  std::pair<double, double> SlowLoading::shorten(Vector &u)
+  std::pair<double, double> SlowLoading::shorten(Vector &u, const double t)
   {
     constexpr double shortest = 1e-3; // of what is left of the step
-    double           end      = breaking.goal;
-    if (!divides)
+    double           end      = t;
+    if (!options.divides_steps || !op.brittle())
       return {end, 0.};
     const double begins = motion ? begins_in_motion : begins_at_rest;
     double       most   = op.stretch_over_critical(u);
-    while (most > begins && end - now > shortest * (breaking.goal - now))
+    while (most > begins && end - reached.time > shortest * (breaking.goal - reached.time))
       {
         // Were it linear in t. It is convex where u is: at most this, then.
         const double target = 0.5 * (1. + begins);
         const double part   = (target - breaking.most) / (most - breaking.most);
-        end                 = now + part * (end - now);
-        u.sadd(part, 1. - part, last);
+        end                 = reached.time + part * (end - reached.time);
+        u.sadd(part, 1. - part, before.state);
         solve(u, end);
         most = op.stretch_over_critical(u);
       }
@@ -353,7 +352,8 @@ namespace PeriDeal
                          const AfterStep &after_round,
                          const AfterStep &before_breaks)
   {
-    const double size_before = size, goal_before = breaking.goal;
+    const double size_before = reached.size, goal_before = breaking.goal;
+    breaking.division.whole = t - reached.time;
     for (bool is_there = false; !is_there;)
       try
         {
@@ -363,36 +363,70 @@ namespace PeriDeal
         }
       catch (const StepLeft &)
         {
-          u             = last;
-          size          = size_before;
+          u             = before.state;
+          reached.size  = size_before;
           breaking.goal = goal_before;
-          after_round(now); // keeps the state, and stops
+          after_round(reached.time); // keeps the state, and stops
         }
     go_on(u, after_round, before_breaks);
   }
 
 
-  void SlowLoading::reach(Vector &u, const AfterStep &before_breaks, const bool may_be_left)
+  double SlowLoading::find_next_equilibrium(Vector &u, const bool may_be_left)
   {
-    const double t = breaking.goal;
-    last           = u;
+    // Loads of temperatures are those of the goal; what faces of cracks have done stays.
+    const bool   may_divide = options.divides_steps && op.nonlinear() && !op.may_touch();
+    const double before_it  = reached.size;
+    bool         is_divided = breaking.division.last > 0.;
+    // Twice as far as the last part, but no sliver is left.
+    double t = is_divided && reached.time + 2.5 * breaking.division.last < breaking.goal ?
+                 reached.time + 2. * breaking.division.last :
+                 breaking.goal;
+    for (;;)
+      try
+        {
+          find_equilibrium(u, t, may_be_left);
+          is_divided = is_divided && t - reached.time < (1. - 1e-9) * breaking.division.whole;
+          breaking.division.last = is_divided ? t - reached.time : 0.;
+          return t;
+        }
+      catch (const Diverged &) // on all processes
+        {
+          const double half = 0.5 * (t - reached.time);
+          u                 = before.state;
+          if (!may_divide ||
+              half * breaking.division.most_parts < (1. - 1e-9) * breaking.division.whole)
+            throw;
+          is_divided   = true;
+          t            = reached.time + half;
+          reached.size = before_it;
+          ++counts.divisions;
+          op.linearize(u);
+          solver->operator_changed();
+        }
+  }
+
+
+  void SlowLoading::find_equilibrium(Vector &u, const double t, const bool may_be_left)
+  {
     if (before.any)
       {
-        size =
-          std::max(size, undeformed_residual(op, u, scratch, unbalanced, t, options.remembers));
-        if (size == 0.) // nothing loads it but what its law does as time goes on
+        reached.size = std::max(
+          reached.size,
+          undeformed_residual(op, u, memory.scratch, memory.unbalanced, t, options.remembers));
+        if (reached.size == 0.) // nothing loads it but what its law does as time goes on
           {
-            op.residual(scratch, last, t);
-            size = scratch.l2_norm();
+            op.residual(memory.scratch, before.state, t);
+            reached.size = memory.scratch.l2_norm();
           }
         // Where forces are linear and loads change in proportion this is the solution.
-        const double ratio = (t - now) / (now - before.start);
-        u                  = last;
+        const double ratio = (t - reached.time) / (reached.time - before.start);
+        u                  = before.state;
         u.sadd(1. + ratio, -ratio, before.change);
         op.distribute(u, t);
       }
     else
-      size = std::max(size, start_statics(op, u, t, options));
+      reached.size = std::max(reached.size, start_statics(op, u, t, options));
     try
       {
         solve(u, t, may_be_left);
@@ -402,18 +436,24 @@ namespace PeriDeal
         // Of forces, which have no value there (bonds have one).
         if (failure.trip.monitor != "inversion" || failure.trip.value > 0.)
           throw;
-        op.linearize(last);
-        continue_statics(op, u = last, t, options);
+        op.linearize(before.state);
+        continue_statics(op, u = before.state, t, options);
         solve(u, t, may_be_left);
       }
-    const auto [end, most] = shorten(u);
-    op.unbalanced(unbalanced, u, end);
+  }
+
+
+  void SlowLoading::reach(Vector &u, const AfterStep &before_breaks, const bool may_be_left)
+  {
+    before.state           = u;
+    const auto [end, most] = shorten(u, find_next_equilibrium(u, may_be_left));
+    op.unbalanced(memory.unbalanced, u, end);
     accept(op, u, end, so_far); // what breaks then does so at once
     before.change = u;
-    before.change -= last;
-    so_far.work += work_of_forces.step(last, u, unbalanced, end);
+    before.change -= before.state;
+    so_far.work += work_of_forces.step(before.state, u, memory.unbalanced, end);
     so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
-    breaking         = {end, 0., false, false, t, breaking.most};
+    breaking         = {end, 0., false, false, breaking.goal, breaking.most, breaking.division};
     if (before_breaks && most > 1.)
       before_breaks(end);
   }
@@ -426,39 +466,39 @@ namespace PeriDeal
         change_bonds(u, breaking.time, after_round);
         before.change.sadd(-1., 1., u);
         before.any   = true;
-        before.start = now;
-        accept(op, u, now = breaking.time, so_far);
-        if (now >= breaking.goal)
+        before.start = reached.time;
+        accept(op, u, reached.time = breaking.time, so_far);
+        if (reached.time >= breaking.goal)
           break;
         reach(u, before_breaks);
       }
-    ++steps;
-    tell_step(now);
+    ++counts.steps;
+    tell_step(reached.time);
   }
 
 
   void SlowLoading::renew(Vector &u)
   {
-    last = u;
-    solve(u, now);
-    op.unbalanced(unbalanced, u, now);
-    so_far.work += work_of_forces.step(last, u, unbalanced, now);
-    breaking = {now, 0., false, false, now, breaking.most};
-    change_bonds(u, now, {});
-    accept(op, u, now, so_far);
+    before.state = u;
+    solve(u, reached.time);
+    op.unbalanced(memory.unbalanced, u, reached.time);
+    so_far.work += work_of_forces.step(before.state, u, memory.unbalanced, reached.time);
+    breaking = {reached.time, 0., false, false, reached.time, breaking.most, {}};
+    change_bonds(u, reached.time, {});
+    accept(op, u, reached.time, so_far);
   }
 
 
   void SlowLoading::exchange(Archive &archive, const NodeKeys &keys)
   {
-    archive.exchange("last equilibrium", last, keys);
+    archive.exchange("last equilibrium", before.state, keys);
     archive.exchange("before", before.change, keys);
     archive.exchange("has before", before.any);
-    archive.exchange("size of residuals", size);
-    archive.exchange("now", now);
+    archive.exchange("size of residuals", reached.size);
+    archive.exchange("now", reached.time);
     archive.exchange("time before", before.start);
-    archive.exchange("iterations", iterations);
-    archive.exchange("steps", steps);
+    archive.exchange("iterations", counts.iterations);
+    archive.exchange("steps", counts.steps);
     archive.exchange("start", so_far.start);
     archive.exchange("work", so_far.work);
     archive.exchange("exchanged", so_far.exchanged);
@@ -469,6 +509,9 @@ namespace PeriDeal
     archive.exchange("breaking", breaking.is_open);
     archive.exchange("goal of the step", breaking.goal);
     archive.exchange("stretch over the critical one", breaking.most);
+    archive.exchange("length of the step", breaking.division.whole);
+    archive.exchange("last part of a step", breaking.division.last);
+    archive.exchange("divisions", counts.divisions);
     if (motion)
       motion->exchange(archive);
     work_of_forces.exchange(archive, keys);

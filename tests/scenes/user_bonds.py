@@ -66,7 +66,12 @@ def same():
             expected = run_scene(PLATE, {**settings, "Material/Law": "formula", "Material/Bond force": formula})
             # Energies of formulas are integrals by quadrature.
             rows = [[row for row in run.totals if "energy" not in row["quantity"] and "work" not in row["quantity"]] for run in (found, expected)]
-            check(rows[0] == rows[1] and len(rows[0]) > 5, f"{name}, {kind}: the same digits")
+            check(len(rows[0]) == len(rows[1]) > 5, f"{name}, {kind}: {len(rows[0])} rows")
+            if kind == "at rest": # by Newton's iterations, whose slopes a formula has by differences
+                size = max(abs(row["value"]) for row in rows[0])
+                check_less(max(abs(a["value"] - b["value"]) for a, b in zip(*rows)), 1e-8 * size, f"{name}, {kind}")
+            else:
+                check(rows[0] == rows[1], f"{name}, {kind}: the same digits")
 
 
 BROKEN = {
@@ -106,7 +111,7 @@ def mistakes():
         fails(name, user(path), ["'User law'", *words])
     for overrides, words in (
             ({"Elasticity/Solver": "linear"}, ("Solver", "'Law = user'")),
-            ({"Models": "coupled"}, ("Law", "of bonds, for 'Models = peridynamics' alone")),
+            ({"Models": "coupled", "Material/Young modulus": ""}, ("Law", "of bonds, for 'Models = peridynamics' alone")),
             ({"Models": "finite elements", "Dimension": "2", "Domain/Lower corner": "0, 0", "Domain/Upper corner": "1, 1", "Domain/Cells": "4, 4", "Material/Young modulus": "",
               "Boundary conditions/Displacement": "left: 0, 0", "Output/Line": "", "Material/User states": "0"}, ("User law", "has a 'perideal_bond_law', a law of bonds")),
             ({"Material/Young modulus": ""}, ("Young modulus",)),

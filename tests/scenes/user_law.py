@@ -303,6 +303,11 @@ def plastic():
     slope = 1000 * 100 / 1100
     for time, force in ((1, 1), (5, 1 + 0.004 * slope), (7, 0.004 * slope - 1), (10, 0.004 * slope - 1 - 0.003 * slope)):
         table.add(f"bar, t = {time}", run.total("force on right in x", FE, time), force, relative=1e-8)
+    # A law that asks for shorter steps gets them.
+    impatient = write_file("impatient.c", HEAD + "  if (fabs(dstran[0]) > 0.0006) *pnewdt = 0.5;\n}\n")
+    run = run_scene(BAR, {"Domain/Cells": "4, 2, 2", **user(impatient), "Time/Time step": "2", "Time/End time": "4"})
+    table.add("shorter steps", run.total("force on right in x", FE, 4), 4, relative=1e-8)
+    check("load steps were halved" in run.stdout, f"told: {run.stdout[-500:]}")
     run = run_scene(BAR, {"Domain/Cells": "4, 2, 2", "Material/User properties": "1000, 0.3, 1, 100, 0"})
     table.add("bar, isotropic, t = 7", run.total("force on right in x", FE, 7), 1 + 0.004 * slope - 2, relative=1e-8)
     table.add("bar, isotropic, t = 8", run.total("force on right in x", FE, 8), -(1 + 0.004 * slope) - (0.003 - 2 * (1 + 0.004 * slope) / 1000) * slope, relative=1e-8)

@@ -158,7 +158,7 @@ namespace PeriDeal
 
     unsigned int n_steps() const
     {
-      return steps;
+      return counts.steps;
     }
 
     /** What has been found wrong with equilibria so far. Not collective. */
@@ -167,25 +167,42 @@ namespace PeriDeal
       return found;
     }
 
+    /** How often a load step has been halved since no equilibrium was found at its end. */
+    unsigned int n_divisions() const
+    {
+      return counts.divisions;
+    }
+
     /** Of the solver so far. */
     unsigned int n_iterations() const
     {
-      return iterations;
+      return counts.iterations;
     }
 
   private:
+    /** A step that is divided where no equilibrium is found at its end. */
+    struct Division
+    {
+      static constexpr double most_parts = 16.;
+
+      double whole = 0.; // length of the step
+      double last  = 0.; // of the last part, where steps are divided
+    };
+
     /** The rounds of breaking in an equilibrium. */
     struct Breaking
     {
-      double time = 0., energy = 0.; // of that of the last round
-      bool   any = false, is_open = false;
-      double goal = 0.; // the time at which the step ends
-      double most = 0.; // stretch over critical stretch after the last rounds
+      double   time = 0., energy = 0.; // of that of the last round
+      bool     any = false, is_open = false;
+      double   goal = 0.; // the time at which the step ends
+      double   most = 0.; // stretch over critical stretch after the last rounds
+      Division division;
     };
 
     /** What the last step brought before bonds broke, from which the next one is guessed. */
     struct LastStep
     {
+      Vector state; // the equilibrium before the step
       Vector change;
       double start = 0.;
       bool   any   = false;
@@ -194,8 +211,14 @@ namespace PeriDeal
     /** @param may_be_left the caller puts u back where StepLeft is thrown */
     void solve(Vector &u, const double t, const bool may_be_left = false);
     void reach(Vector &u, const AfterStep &before_breaks, const bool may_be_left = false);
-    /** Returns the time, and the largest stretch over the critical one then; 0: unknown. */
-    std::pair<double, double> shorten(Vector &u);
+    void find_equilibrium(Vector &u, const double t, const bool may_be_left);
+    /** find_equilibrium() at the goal or, where there is none, before it. Returns when. */
+    double find_next_equilibrium(Vector &u, const bool may_be_left);
+    /**
+     * From the equilibrium at time t. Returns the time, and the largest stretch over the critical
+     * one then; 0: unknown.
+     */
+    std::pair<double, double> shorten(Vector &u, const double t);
 
     bool break_bonds(Vector &u, const double t);
     void change_bonds(Vector &u, const double t, const AfterStep &after_round);
@@ -204,15 +227,22 @@ namespace PeriDeal
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
     const StaticOptions           options;
-    std::optional<BreakingMotion> motion;          // where bonds break in one
-    bool                          divides = false; // steps, where bonds get critical
-    Vector                        last;            // equilibrium before the step
+    std::optional<BreakingMotion> motion; // where bonds break in one
     LastStep                      before;
-    Vector                        unbalanced, scratch;
-    WorkOfForces                  work_of_forces;
-    double size = 0.; // of the residual of the largest load so far, by which others are measured
-    double now  = 0.;
-    unsigned int  iterations = 0, steps = 0;
+    struct
+    {
+      Vector unbalanced, scratch;
+    } memory;
+    WorkOfForces work_of_forces;
+    struct
+    {
+      double time = 0.;
+      double size = 0.; // of the residual of the largest load so far, by which others are measured
+    } reached;
+    struct
+    {
+      unsigned int iterations = 0, steps = 0, divisions = 0;
+    } counts;
     LoadingEnergy so_far;
     Breaking      breaking;
     Findings      found;

@@ -10,6 +10,8 @@
 #include <perideal/laws/stress_law.h>
 #include <perideal/scene/body_parameters.h>
 
+#include <mpi.h>
+
 #include <string>
 #include <utility>
 
@@ -51,21 +53,40 @@ namespace PeriDeal
         }
       catch (const UserError &error)
         {
-          fault = error.message();
+          fault    = error.message();
+          too_long = dynamic_cast<const Diverged *>(&error) != nullptr;
         }
       if (tangent != nullptr)
         *tangent = 0.;
       return {};
     }
 
-    /** Throw what the law has thrown on any process. Collective. */
+    /**
+     * Throw what the law has thrown on any process: Diverged where all that it asks for is a
+     * shorter step. Collective.
+     */
     void throw_faults(const StressLaw &law, const MPI_Comm communicator) const
     {
       if (!law.may_fail())
         return;
       const std::string of_this = std::move(fault);
       fault.clear();
-      throw_on_all_if_any(communicator, of_this);
+      const int own = of_this.empty() ? 0 : too_long ? 1 : 2;
+      int       all = 0;
+      MPI_Allreduce(&own, &all, 1, MPI_INT, MPI_MAX, communicator);
+      if (all == 0)
+        return;
+      try
+        {
+          throw_on_all_if_any(communicator, own == all ? of_this : "");
+        }
+      catch (const UserError &error)
+        {
+          constexpr double none = std::numeric_limits<double>::quiet_NaN();
+          if (all == 2)
+            throw;
+          throw Diverged(error.message(), "law", none, none, now);
+        }
     }
 
     /** @param changes a state has changed, on any process */
@@ -87,6 +108,7 @@ namespace PeriDeal
     mutable double      now      = 0.;
     unsigned int        n = 0; // accepted ones in which something has happened, or time has passed
     mutable std::string fault; // of this process
+    mutable bool        too_long = false; // it is that the step is
   };
 
 
