@@ -103,7 +103,8 @@ namespace PeriDeal
         runs(scene, ModelKind::coupled);
       const bool plane_strain = dim == 3 || scene.elasticity.plane == PlaneState::strain;
       if (dim == 1 || !elements || !plane_strain || scene.domain.shape != Shape::box ||
-          poisson < hardly_changes)
+          poisson < hardly_changes ||
+          scene.material.law.kind == SolidLaw::hyperelastic) // whose dilatation is projected
         return;
       const Tensor<1, dim> h    = scene.domain.spacing();
       unsigned int         thin = 0, slender = 0;

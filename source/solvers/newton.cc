@@ -88,8 +88,14 @@ namespace PeriDeal
              ++n)
           {
             const double now = residual.l2_norm();
-            share            = n == 0 ? roughest : share_of(now / last, share);
-            last             = now;
+            // Steps that go on from round-off find no less.
+            if (n > 1 && now > 0.5 * last && now <= round_off_of_forces(op, u, scale))
+              {
+                accept_residual(now / scale);
+                break;
+              }
+            share = n == 0 ? roughest : share_of(now / last, share);
+            last  = now;
             op.linearize(u);
             solver.operator_changed();
             change = 0.;
