@@ -380,6 +380,14 @@ namespace PeriDeal
         numbers,
         "differ from phase to phase, but bonds that lead from one to another have one law. "
         "Give one list; moduli may differ.");
+      bool any_modulus = false;
+      for (const std::string modulus :
+           {"Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio"})
+        any_modulus = any_modulus || !material.text(modulus).empty();
+      material.refuse(
+        has_bonds && !any_modulus,
+        "Law",
+        "found 'user', here a law of bonds, which needs moduli, two of 'Bulk modulus', 'Shear modulus', 'Young modulus' and 'Poisson ratio'. A law of stresses (UMAT) is for 'Models = finite elements', and for 'peridynamics' with 'Model = correspondence' (section 'Elasticity').");
       for (const std::string modulus :
            {"Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio"})
         material.refuse(!has_bonds &&

@@ -114,7 +114,7 @@ def mistakes():
             ({"Models": "coupled", "Material/Young modulus": ""}, ("Law", "of bonds, for 'Models = peridynamics' alone")),
             ({"Models": "finite elements", "Dimension": "2", "Domain/Lower corner": "0, 0", "Domain/Upper corner": "1, 1", "Domain/Cells": "4, 4", "Material/Young modulus": "",
               "Boundary conditions/Displacement": "left: 0, 0", "Output/Line": "", "Material/User states": "0"}, ("User law", "has a 'perideal_bond_law', a law of bonds")),
-            ({"Material/Young modulus": ""}, ("Young modulus",)),
+            ({"Material/Young modulus": ""}, ("Law", "a law of bonds, which needs moduli", "'Model = correspondence'")),
             ({"Material/Fracture energy": "1"}, ("Fracture energy", "'Critical stretch'")),
             ({"Material/Phases/Regions": "a: x - 0.5", "Material/Phases/User properties": "a: 1, 2"}, ("User properties", "bonds that lead from one to another have one law"))):
         check_message(run_scene(BAR, {**user(good), **overrides}, expect_error=True), *words)

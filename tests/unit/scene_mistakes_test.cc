@@ -264,6 +264,7 @@ Material/Law=linear & Material/User law= & Material/User properties=1 => 'User p
 Material/Phases/User properties=core: 1, 2 => 'User properties' | no phase 'core'
 Models=peridynamics => 'Law' | 'user' | 'Models = finite elements'
 Models=peridynamics & Elasticity/Model=bond-based => 'Law' | 'user' | 'Models = finite elements'
+Models=peridynamics & Material/Young modulus=1 & Material/Poisson ratio=0.2 & Material/Fracture energy=1 => 'Fracture energy' | 'Law = user' | 'Critical stretch'
 Models=coupled & Coupling/Zone=everywhere => 'Law' | 'user' | 'Models = finite elements'
 Elasticity/Solver=linear => 'Solver' | 'Law = user' | 'newton'
 Material/Fracture energy=1 => 'Law' | 'user' | 'Fracture energy'
@@ -293,6 +294,7 @@ Material/Bulk modulus= & Material/Shear modulus= & Material/Young modulus=1 & Ma
 Material/Bulk modulus= & Material/Shear modulus= & Material/Young modulus=1 & Material/Poisson ratio=0.5 & Elasticity/Plane=strain => 'Poisson ratio' | less than 0.5
 Material/Law=linear & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 & Elasticity/Plane=strain => 'Kinematics' | 'full' | 'Temperature change'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Plane=strain => 'Kinematics' | 'Law = hyperelastic'
+Elasticity/Plane=strain & Cracks/Segments=0.2,0.5 ; 0.4,0.5 => 'Contact' | deformed much | 'false'
 )");
   }
 
