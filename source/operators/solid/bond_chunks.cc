@@ -26,6 +26,16 @@ namespace PeriDeal
     using D = hn::CappedTag<double, width>;
     using V = hn::Vec<D>;
 
+    /** What is remembered is read once a step and comes from far: ask for it some bonds ahead. */
+    template <int dim>
+    HWY_INLINE void ask_ahead(const double *remembered)
+    {
+      constexpr int ahead = 12;
+      for (int a = 0; a < dim; ++a)
+        __builtin_prefetch(remembered + (ahead * dim + a) * width);
+    }
+
+
     /** Some of the sites, as many as there are lanes. */
     template <int dim>
     struct Sites
@@ -138,6 +148,7 @@ namespace PeriDeal
           for (std::size_t bond = 0; bond < chunk.n_bonds; ++bond)
             {
               V z_p[dim], du[dim], z[dim];
+              ask_ahead<dim>(plastic + dim * width * bond + first);
               load<dim>(plastic + dim * width * bond + first, z_p);
               sites.changes(chunk, first, bond, du);
               sites.elastic(chunk, bond, z_p, du, z);
@@ -191,8 +202,8 @@ namespace PeriDeal
             {
               double *const memory = plastic + dim * width * bond + first;
               V             z_p[dim], du[dim], z[dim];
-              for (int a = 0; a < dim; ++a)
-                z_p[a] = hn::LoadU(d, memory + a * width);
+              ask_ahead<dim>(memory);
+              load<dim>(memory, z_p);
               sites_before.changes(before, first, bond, du);
               sites_before.elastic(before, bond, z_p, du, z);
               for (int a = 0; a < dim; ++a)

@@ -145,32 +145,42 @@ namespace PeriDeal
     const auto           length = static_cast<std::ptrdiff_t>(row.length);
     const std::ptrdiff_t own    = run.y + run.z * (layout.grid(nullptr).plane_stride / length);
     const auto           before = static_cast<std::ptrdiff_t>(row.before);
-    std::vector<FarBond> bonds;
+    std::vector<FarBond> bonds, next; // what comes next is asked for before what has come is added
+    double              *at[3] = {}, *at_next[3] = {};
+    const auto           add = [&]() {
+      if (!bonds.empty())
+        add_far<dim>(bonds.data(), bonds.size(), at);
+      bonds.swap(next);
+      std::swap(at, at_next);
+    };
     for (const auto &[steps, columns] : family.columns)
       for (std::ptrdiff_t place = (run.x + before + steps) / width;
            place <= (run.x + before + steps + static_cast<std::ptrdiff_t>(run.n) - 1) / width;
            ++place)
         {
-          bonds.clear();
+          next.clear();
           for (const Column &column : columns)
             {
               const std::uint32_t k = number_of[(own + column.rows) * row.n + place];
               if (k == none)
                 continue;
               const Chunk &chunk = chunks[k];
-              if (what == Of::plastic ? chunk.remembers : chunk.is_kept)
-                bonds.push_back({(what == Of::plastic ? chunk.plastic : chunk.elastic).data() +
-                                   dim * width * column.opposite,
-                                 chunk.factors,
-                                 column.weight});
+              if (!(what == Of::plastic ? chunk.remembers : chunk.is_kept))
+                continue;
+              const double *const remembered =
+                (what == Of::plastic ? chunk.plastic : chunk.elastic).data() +
+                dim * width * column.opposite;
+              for (unsigned int a = 0; a < dim; ++a)
+                __builtin_prefetch(remembered + a * width);
+              next.push_back({remembered, chunk.factors, column.weight});
             }
-          if (bonds.empty())
-            continue;
-          std::array<double *, 3> at{};
           for (unsigned int a = 0; a < dim; ++a)
-            at[a] = to[a] + (place * static_cast<std::ptrdiff_t>(width) - before - steps - run.x);
-          add_far<dim>(bonds.data(), bonds.size(), at.data());
+            at_next[a] =
+              to[a] + (place * static_cast<std::ptrdiff_t>(width) - before - steps - run.x);
+          add();
         }
+    next.clear();
+    add();
   }
 
 
