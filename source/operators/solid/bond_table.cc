@@ -104,7 +104,8 @@ namespace PeriDeal
       }
     if (leave_out)
       {
-        body.units = unit_bonds(families);
+        body.units    = unit_bonds(families);
+        body.may_pack = !scene.elasticity.is_correspondence();
         changing   = find_changing(families, scene);
       }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
