@@ -249,10 +249,9 @@ namespace PeriDeal
                   "set Law = softening\nset Tensile strength = 1e3\nset Fracture energy = 1e9\n",
                   "state-based");
       measure_law("linear, correspondence", "", "correspondence");
-      for (const auto &[name, yield_stress] :
-           {std::make_pair("no node has yielded", "100"),
-            std::make_pair("a part of it yields", "0.5"),
-            std::make_pair("all nodes have yielded", "0.001")})
+      for (const auto &[name, yield_stress] : {std::make_pair("no node has yielded", "100"),
+                                               std::make_pair("a part of it yields", "0.5"),
+                                               std::make_pair("all nodes have yielded", "0.001")})
         measure_law(std::string("plastic, correspondence, ") + name,
                     std::string("set Law = plastic\nset Yield stress = ") + yield_stress + "\n",
                     "correspondence");

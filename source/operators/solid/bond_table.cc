@@ -106,7 +106,7 @@ namespace PeriDeal
       {
         body.units    = unit_bonds(families);
         body.may_pack = !scene.elasticity.is_correspondence();
-        changing   = find_changing(families, scene);
+        changing      = find_changing(families, scene);
       }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
