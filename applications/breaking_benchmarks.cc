@@ -155,6 +155,15 @@ namespace PeriDeal
       stepper->advance(u, v, n_steps * dt, 2 * n_steps * dt);
       const double seconds = (processor_seconds() - start) / n_steps,
                    bonds   = 2e-6 * static_cast<double>(op.size().bonds) / seconds;
+      if (const Correspondence<3> *const nodal = op.bonds().correspondence())
+        for (const auto &[of, strains] : nodal->stresses.shown())
+          found("laws, 3D 31^3, m = 3: " + name + ": nodes that have yielded",
+                text("%.1f %%",
+                     100. *
+                       static_cast<double>(std::count_if(strains.begin(),
+                                                         strains.end(),
+                                                         [](const double x) { return x > 0.; })) /
+                       static_cast<double>(strains.size())));
       found("laws, 3D 31^3, m = 3: " + name,
             text("%.1f M bonds/s at both ends, %.2f M node updates/s, %.0f bytes per node",
                  bonds,
@@ -240,9 +249,12 @@ namespace PeriDeal
                   "set Law = softening\nset Tensile strength = 1e3\nset Fracture energy = 1e9\n",
                   "state-based");
       measure_law("linear, correspondence", "", "correspondence");
-      measure_law("plastic, correspondence, a part of it yields",
-                  "set Law = plastic\nset Yield stress = 0.5\n",
-                  "correspondence");
+      for (const auto &[name, yield_stress] : {std::make_pair("no node has yielded", "100"),
+                                               std::make_pair("a part of it yields", "0.5"),
+                                               std::make_pair("all nodes have yielded", "0.001")})
+        measure_law(std::string("plastic, correspondence, ") + name,
+                    std::string("set Law = plastic\nset Yield stress = ") + yield_stress + "\n",
+                    "correspondence");
       for (const LawOfLammps &law :
            {LawOfLammps{"lps", ""}, LawOfLammps{"ves", " 0.5 1"}, LawOfLammps{"eps", " 0.5"}})
         if (const double rate = rate_of_lammps(law, 31, 3., 40); rate > 0.)

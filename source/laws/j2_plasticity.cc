@@ -154,7 +154,7 @@ namespace PeriDeal
           next[k] += 1.5 * grown / size * trial.access_raw_entry(k);
         next[kappa_at] += grown;
       }
-    const double shear = left * size; // the equivalent stress
+    const double shear = left * own; // the equivalent stress, of the strain alone
     result.stored      = 0.5 * of.dilatation * theta * theta + shear * shear / (6. * G) +
                     0.5 * H * next[kappa_at] * next[kappa_at];
     result.dissipated = of.yield_stress * grown;
@@ -207,8 +207,8 @@ namespace PeriDeal
         next[kappa_at] += grown;
       }
     const double r = flow.of_s(M);
-    result.stored  = 0.5 * p * p / K + 0.25 * (s * s) / G + r * r * beside.square / (6. * G) +
-                    0.5 * H * next[kappa_at] * next[kappa_at];
+    result.stored =
+      0.5 * p * p / K + 0.25 * (s * s) / G + 0.5 * H * next[kappa_at] * next[kappa_at];
     result.dissipated = of.yield_stress * grown;
     // M grows by this per half of a change of the square of s_eq.
     const double keeps  = 1. - H * M,

@@ -354,7 +354,7 @@ namespace PeriDeal
           list.add("plastic_strain",
                    [&](const unsigned int i) { return yielding->plastic_strain(i); });
         if (const auto *const nodal = states->bonds().correspondence())
-          for (const auto &[name, values] : nodal->shown())
+          for (const auto &[name, values] : nodal->stresses.shown())
             list.add(name, [&of = values](const unsigned int i) { return of[i]; });
         list.add("node_volume", [&](const unsigned int i) { return node_set->volume(i); });
         return list.take();
@@ -580,7 +580,7 @@ namespace PeriDeal
                 states->bonds().yielding())
               stress.back()[2][2] = states->bonds().yielding()->out_of_plane(i);
             if (dim == 2 && knows_out_of_plane)
-              stress.back()[2][2] = states->bonds().correspondence()->out_of_plane(i);
+              stress.back()[2][2] = tensors.out_of_plane[i];
             if constexpr (dim == 2)
               if (scene.material.law.kind == SolidLaw::viscoelastic)
                 {

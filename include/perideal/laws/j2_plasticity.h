@@ -68,7 +68,7 @@ namespace PeriDeal
       return update_with(none, trial, next, tangent);
     }
 
-    /** As update(); what is stored beside, r^2 B/(6 G), is in what is stored. */
+    /** As update(); what is stored beside, r^2 B/(6 G), is not in what is stored. */
     Response update_with(Beside &beside, const Trial &trial, double *next, Tangent *tangent) const;
 
     std::vector<std::pair<std::string, unsigned int>> shown() const override

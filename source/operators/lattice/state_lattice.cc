@@ -14,9 +14,7 @@ namespace PeriDeal
   {
     return body.elasticity.has_full_kinematics() ?
              "with 'Kinematics = full' each bond has its own direction" :
-           body.elasticity.is_correspondence() ?
-             "with 'Model = correspondence' forces follow from gradients at the nodes" :
-           body.material.law.kind != SolidLaw::linear ?
+           body.material.law.kind != SolidLaw::linear && !body.elasticity.is_correspondence() ?
              "with another 'Law' than 'linear' each bond answers by itself" :
            body.elasticity.is_static() && body.material.breaks() ?
              "bonds may break in a body at rest" :

@@ -47,7 +47,7 @@ namespace PeriDeal
       bonds.rows.body.state.resize(bonds.rows.body.size());
     if (!criterion)
       return;
-    if (bonds.sums.has_lattice() ||
+    if (bonds.rows.body.leaves_out() ||
         (criterion->softens() && !body.elasticity.is_static() && !bonds.kinematics.is_full() &&
          bonds.families.neighbors().has_unique_sites()))
       screen = std::make_unique<StretchScreen<dim>>(bonds.families, criterion->least_stretches());
@@ -204,7 +204,7 @@ namespace PeriDeal
   {
     if (!criterion)
       return 0.;
-    Assert(!bonds.sums.has_lattice(), ExcMessage("All bonds are to be stored."));
+    Assert(!bonds.rows.body.leaves_out(), ExcMessage("All bonds are to be stored."));
     double most = 0.;
     u.update_ghost_values();
     bonds.ends.find(u.begin());

@@ -104,8 +104,9 @@ namespace PeriDeal
       }
     if (leave_out)
       {
-        body.units = unit_bonds(families);
-        changing   = find_changing(families, scene);
+        body.units    = unit_bonds(families);
+        body.may_pack = !scene.elasticity.is_correspondence();
+        changing      = find_changing(families, scene);
       }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {

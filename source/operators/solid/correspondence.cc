@@ -3,21 +3,15 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
-#include <perideal/base/place_text.h>
-#include <perideal/base/smallest_eigenvalue.h>
-#include <perideal/base/user_error.h>
-#include <perideal/base/worst_trip.h>
-#include <perideal/laws/linear_stress.h>
 #include <perideal/operators/solid/correspondence.h>
-#include <perideal/operators/solid/stress_laws.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "family_sums.h"
+#include "gradient_lattice.h"
 #include "large_deformation.h"
+#include "lattice_histories.h"
 
 // A node knows its gradient and its law, a bond what both of its nodes make of them.
 
@@ -28,75 +22,6 @@ namespace PeriDeal
   namespace
   {
     template <int dim>
-    SymmetricTensor<2, dim> in_body(const StressLaw::Tensor &full)
-    {
-      SymmetricTensor<2, dim> part;
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = a; b < dim; ++b)
-          part[a][b] = full[a][b];
-      return part;
-    }
-
-
-    template <int dim>
-    SymmetricTensor<4, dim> in_body(const StressLaw::Tangent &full)
-    {
-      SymmetricTensor<4, dim> part;
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = a; b < dim; ++b)
-          for (unsigned int c = 0; c < dim; ++c)
-            for (unsigned int d = c; d < dim; ++d)
-              part[a][b][c][d] = full[a][b][c][d];
-      return part;
-    }
-
-
-    /** Of a stiffness, or a compliance: the shear modulus of its mean over all directions. */
-    template <int dim>
-    double mean_shear(const SymmetricTensor<4, dim> &C)
-    {
-      if (dim == 1)
-        return 0.5 * C[0][0][0][0];
-      double trace = 0., of_volume = 0.;
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = 0; b < dim; ++b)
-          {
-            trace += C[a][b][a][b];
-            of_volume += C[a][a][b][b];
-          }
-      return (trace - of_volume / dim) / (dim * (dim + 1.) - 2.);
-    }
-
-
-    /** A shear modulus by which no shear is much stiffer than in the body: Reuss's mean. */
-    template <int dim>
-    double soft_shear(const SymmetricTensor<4, dim> &C)
-    {
-      return 0.25 / mean_shear(invert(C));
-    }
-
-
-    /** The largest eigenvalue of a stiffness as a map of strains. */
-    template <int dim>
-    double largest_modulus(const SymmetricTensor<4, dim> &C)
-    {
-      constexpr unsigned int      n = SymmetricTensor<2, dim>::n_independent_components;
-      Eigen::Matrix<double, n, n> matrix;
-      for (unsigned int k = 0; k < n; ++k)
-        for (unsigned int l = 0; l < n; ++l)
-          {
-            const auto a = SymmetricTensor<2, dim>::unrolled_to_component_indices(k),
-                       b = SymmetricTensor<2, dim>::unrolled_to_component_indices(l);
-            matrix(k, l) = (k < dim ? 1. : std::sqrt(2.)) * (l < dim ? 1. : std::sqrt(2.)) *
-                           C[a[0]][a[1]][b[0]][b[1]];
-          }
-      return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>>(matrix,
-                                                                        Eigen::EigenvaluesOnly)
-        .eigenvalues()[n - 1];
-    }
-
-
-    template <int dim>
     void write(double *numbers, const Tensor<2, dim> &tensor)
     {
       for (unsigned int a = 0; a < dim; ++a)
@@ -106,18 +31,22 @@ namespace PeriDeal
 
 
     template <int dim>
-    Tensor<1, dim> times(const double *numbers, const Tensor<1, dim> &vector)
+    inline Tensor<1, dim> times(const double *numbers, const Tensor<1, dim> &vector)
     {
       Tensor<1, dim> product;
       for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = 0; b < dim; ++b)
-          product[a] += numbers[dim * a + b] * vector[b];
+        {
+          double sum = numbers[dim * a] * vector[0];
+          for (unsigned int b = 1; b < dim; ++b)
+            sum += numbers[dim * a + b] * vector[b];
+          product[a] = sum;
+        }
       return product;
     }
 
 
     template <int dim>
-    Tensor<1, dim> vector_at(const double *numbers)
+    inline Tensor<1, dim> vector_at(const double *numbers)
     {
       Tensor<1, dim> vector;
       for (unsigned int a = 0; a < dim; ++a)
@@ -126,31 +55,15 @@ namespace PeriDeal
     }
 
 
-    /** The sum of du (W xi)^T over the family of a node. */
+    /** Add du (W xi)^T. */
     template <int dim>
-    Tensor<2, dim> sum_of_changes(const BondTable<dim> &bonds,
-                                  const BondEnds<dim>  &ends,
-                                  const double         *u,
-                                  const unsigned int    i,
-                                  const Span           &inside,
-                                  const Span           &outside)
+    inline void add_change(Tensor<2, dim>       &sum,
+                           const Tensor<1, dim> &change,
+                           const Tensor<1, dim> &moment)
     {
-      Tensor<2, dim> sum;
-      const auto     add = [&](const BondRows<dim> &rows, const std::size_t k) {
-        const double *const   far    = ends.value(u, rows.neighbors[k]);
-        const Tensor<1, dim> &moment = rows.moments[k];
-        for (unsigned int a = 0; a < dim; ++a)
-          {
-            const double change = far[a] - u[dim * i + a];
-            for (unsigned int b = 0; b < dim; ++b)
-              sum[a][b] += change * moment[b];
-          }
-      };
-      for (std::size_t k = inside.begin; k < inside.end; ++k)
-        add(bonds.body, k);
-      for (std::size_t k = outside.begin; k < outside.end; ++k)
-        add(bonds.beyond, k);
-      return sum;
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = 0; b < dim; ++b)
+          sum[a][b] += change[a] * moment[b];
     }
 
 
@@ -166,6 +79,58 @@ namespace PeriDeal
       for (std::size_t k = outside.begin; k < outside.end; ++k)
         visit(bonds.beyond, k);
     }
+
+
+    /** The sum of du (W xi)^T over the family of a node. */
+    template <int dim>
+    Tensor<2, dim> sum_of_changes(const BondTable<dim> &bonds,
+                                  const BondEnds<dim>  &ends,
+                                  const double         *u,
+                                  const unsigned int    i,
+                                  const Span           &inside,
+                                  const Span           &outside)
+    {
+      Tensor<2, dim> sum;
+      for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
+        add_change(sum, ends.change(u, i, rows.neighbors[k]), rows.moments[k]);
+      });
+      return sum;
+    }
+
+
+    /** Of a node: of W |z_e|^2 and of W z_e . du. */
+    struct ElasticSums
+    {
+      double squares = 0., products = 0.;
+    };
+
+
+    /** Add some of its bonds, which remember something where the law flows. */
+    template <int dim>
+    void add_elastic(ElasticSums           &sums,
+                     const NodeShapes<dim> &shapes,
+                     const BondTable<dim>  &bonds,
+                     const BondEnds<dim>   &ends,
+                     const double          *u,
+                     const unsigned int     i,
+                     const Tensor<2, dim>  &slopes,
+                     const bool             flows,
+                     const Span            &inside,
+                     const Span            &outside)
+    {
+      constexpr unsigned int n_history = Correspondence<dim>::n_history;
+      for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
+        const double w = shapes.weights().of(&rows == &bonds.beyond)[k];
+        if (w == 0.)
+          return;
+        const Tensor<1, dim> change = ends.change(u, i, rows.neighbors[k]);
+        Tensor<1, dim>       beside = change - slopes * rows.moments[k] / w;
+        if (flows)
+          beside -= vector_at<dim>(&rows.nonlinear.history[n_history * k]);
+        sums.squares += w * beside.norm_square();
+        sums.products += w * (beside * change);
+      });
+    }
   } // namespace
 
 
@@ -176,124 +141,88 @@ namespace PeriDeal
                                       const NodeLaws<dim>       &laws,
                                       const ThermalStrains      &thermal,
                                       const BodyParameters<dim> &body)
-    : families(families)
+    : shapes(families, ends, bonds, laws)
+    , stresses(families.nodes(), thermal, body)
+    , families(families)
     , ends(ends)
     , bonds(bonds)
-    , laws(laws)
-    , thermal(thermal)
-    , steps(StressSteps::of_scene(body))
   {
     Assert(!bonds.body.is_packed() && !bonds.beyond.is_packed(), ExcInternalError());
-    const Nodes<dim>    &nodes  = families.nodes();
-    PlacedStressLaw<dim> placed = stress_law_of(body);
-    if (!placed.law)
-      placed = linear_stress_law(body);
-    law.law       = std::move(placed.law);
-    law.j2        = dynamic_cast<const J2Plasticity *>(law.law.get());
-    law.is_linear = dynamic_cast<const LinearStress *>(law.law.get()) != nullptr;
-    law.is_full   = body.elasticity.has_full_kinematics();
-    std::string message;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+    Assert(!stresses.is_full() || !bonds.body.leaves_out(), ExcInternalError());
+    const Nodes<dim>  &nodes = families.nodes();
+    const unsigned int n     = nodes.n_owned();
+    trial.slopes.resize(n);
+    trial.squares.resize(n, 0.);
+    trial.products.resize(n, 0.);
+    trial.ratios.resize(n, 1.);
+    for (unsigned int i = 0; i < n; ++i)
       {
-        const Point<dim> &p = nodes.position(i);
-        if (law.j2 != nullptr && message.empty() &&
-            !(body.material.law.yield_stress->value(p) > 0.))
-          message =
-            body.material.where("Yield stress") + " is out of range at " + place_text(p) + ".";
-        const std::vector<double> here = placed.parameters(p);
-        law.parameters.insert(law.parameters.end(), here.begin(), here.end());
+        SymmetricTensor<4, dim> stiffness;
+        J2Plasticity::Beside    none;
+        stresses.ask(i, trial.slopes[i], none, &stiffness);
+        shapes.add(stiffness, stiffness.norm() > 0.); // zero after a fault
       }
-    throw_on_all_if_any(nodes.communicator(), message);
-    law.states.resize(nodes.n_owned() * law.law->n_state(), 0.);
-    trial.states = law.states;
-    trial.responses.resize(nodes.n_owned());
-    trial.slopes.resize(nodes.n_owned());
-    trial.squares.resize(nodes.n_owned(), 0.);
-    trial.ratios.resize(nodes.n_owned(), 1.);
-    shapes.resize(nodes.n_owned());
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        typename J2Plasticity::Beside none;
-        ask(i, 0., &shapes[i].elastic, none);
-        if (steps.fault.empty()) // else it is zero
-          shapes[i].shear = soft_shear(shapes[i].elastic);
-      }
-    steps.throw_faults(*law.law, nodes.communicator());
-    weights.resize(bonds);
-    std::vector<unsigned int> all(nodes.n_owned());
+    stresses.throw_faults();
+    std::vector<unsigned int> all(n);
     std::iota(all.begin(), all.end(), 0U);
     renew(all);
+    if (bonds.body.leaves_out())
+      {
+        std::vector<bool> computed;
+        for (unsigned int i = 0; i < n; ++i)
+          computed.push_back(bonds.is_on_lattice(i));
+        lattice.sums = std::make_unique<GradientLattice<dim>>(families, computed);
+        if (stresses.flows())
+          lattice.histories =
+            std::make_unique<LatticeHistories<dim>>(families, lattice.sums->layout);
+      }
     const auto with = [&](const unsigned int n) { return interleaved(*nodes.partitioner(), n); };
-    trial.numbers.reinit(with(law.j2 != nullptr ? n_of_flow : n_numbers));
-    tangent.changes.reinit(with(law.j2 != nullptr ? n_numbers + 1 : n_numbers));
+    trial.numbers.reinit(with(stresses.flows() ? n_of_flow : n_numbers));
+    tangent.changes.reinit(with(stresses.flows() ? n_numbers + 1 : n_numbers));
     const auto unknowns = with(dim);
-    trial.displacement.reinit(unknowns);
-    if (law.is_linear)
-      return;
-    for (Vector *v : {&trial.forces, &accepted.displacement, &accepted.forces})
+    for (Vector *v : {&trial.displacement, &trial.forces})
       v->reinit(unknowns);
-    trial.changes.resize(bonds);
+    if (!is_linear())
+      for (Vector *v : {&accepted.displacement, &accepted.forces})
+        v->reinit(unknowns);
   }
+
+
+  template <int dim>
+  Correspondence<dim>::~Correspondence() = default;
 
 
   template <int dim>
   void Correspondence<dim>::renew(const std::vector<unsigned int> &nodes)
   {
-    // Of bonds that have broken too few may be left for a gradient, and those that are would make
-    // the node so stiff that steps are no longer stable. At a face of a crack half of M is left.
-    constexpr double few = 0.35;
-    trial.known          = false;
-    for (const unsigned int i : nodes)
-      {
-        Full M;
-        bool lost = false;
-        bonds.for_each(i, [&](const auto &bond) {
-          const Tensor<1, dim> xi        = ends.vector(i, bond.neighbor);
-          const bool           is_beyond = &bonds.rows_of(bond.number) == &bonds.beyond;
-          (is_beyond ? weights.beyond : weights.body)[bonds.place(bond.number)] =
-            (bond.moment * xi) / xi.norm_square();
-          M += symmetrize(outer_product(bond.moment, xi));
-          lost = lost || !bonds.is_whole(bond.number);
-        });
-        Shape       &shape = shapes[i];
-        const double q     = laws.weighted.local_element(i);
-        const bool   holds = !lost ||
-                           dim * smallest_eigenvalue(M) > few * q * families.nodes().volume(i);
-        shape.inverse    = holds ? invert(M) : Full();
-        shape.stabilizer = holds ? dim * (dim + 2.) * shape.shear / q : 0.;
-      }
+    trial.known = false;
+    shapes.renew(nodes);
   }
 
 
   template <int dim>
-  void Correspondence<dim>::ask(const unsigned int             i,
-                                const double                   beside,
-                                SymmetricTensor<4, dim>       *of_tangent,
-                                typename J2Plasticity::Beside &flow) const
+  void Correspondence<dim>::settle(const unsigned int i,
+                                   const double       squares,
+                                   const double       products) const
   {
-    Full strain = law.is_full ? strain_of(trial.slopes[i]) : symmetrize(trial.slopes[i]);
-    for (unsigned int d = 0; thermal.any() && d < dim; ++d)
-      strain[d][d] -= thermal[i];
-    StressLaw::Tangent  full;
-    StressLaw::Tangent *wanted = of_tangent == nullptr ? nullptr : &full;
-    StressLaw::Trial    at{in_space<dim>(strain),
-                        law.parameters.data() + i * law.law->n_parameters(),
-                        law.states.data() + i * law.law->n_state()};
-    at.length          = std::pow(families.nodes().volume(i), 1. / dim);
-    at.element         = families.nodes().partitioner()->local_to_global(i);
-    const double ratio = law.is_full ? determinant(deformation_of(trial.slopes[i])) : 1.;
-    if (!(ratio > 0.))
-      {
-        trial.responses[i] = StressLaw::Response();
-        return keep_lower(trial.inverted,
-                          turned_inside_out(families.nodes().position(i), ratio, steps.now));
-      }
-    double *const next = trial.states.data() + i * law.law->n_state();
-    flow.square        = beside;
-    trial.responses[i] = law.j2 != nullptr ? law.j2->update_with(flow, at, next, wanted) :
-                                             steps.update(*law.law, at, next, wanted);
-    if (of_tangent != nullptr)
-      *of_tangent = in_body<dim>(full);
+    const auto          &shape  = shapes[i];
+    const double         volume = families.nodes().volume(i);
+    J2Plasticity::Beside flow;
+    flow.square = 3. * shape.shear * shape.stabilizer / volume * squares;
+    stresses.ask(i, trial.slopes[i], flow, nullptr);
+    trial.squares[i]             = squares;
+    trial.products[i]            = products;
+    trial.ratios[i]              = flow.ratio;
+    const bool           flows   = stresses.flows();
+    double *const        numbers = trial.numbers.begin() + (flows ? n_of_flow : n_numbers) * i;
+    const double         c       = shape.stabilizer * flow.ratio;
+    const Tensor<2, dim> inverse(shape.inverse), pull = stresses.pull(i, trial.slopes[i]);
+    write(numbers + at_force, Tensor<2, dim>(volume * (pull * inverse) - c * trial.slopes[i]));
+    numbers[at_stiffness] = c;
+    if (!flows)
+      return;
+    write(numbers + at_slopes, trial.slopes[i]);
+    numbers[at_lost] = 1. - flow.ratio;
   }
 
 
@@ -303,42 +232,69 @@ namespace PeriDeal
                                     const Span        &inside,
                                     const Span        &outside) const
   {
-    const bool            flows = law.j2 != nullptr;
-    const Shape          &shape = shapes[i];
-    const Tensor<2, dim>  inverse(shape.inverse);
+    const Tensor<2, dim>  inverse(shapes[i].inverse);
     const Tensor<2, dim> &slopes = trial.slopes[i] =
       sum_of_changes(bonds, ends, u, i, inside, outside) * inverse;
-    double squares = 0.;
-    for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
-      const bool   is_beyond = &rows == &bonds.beyond;
-      const double w         = weights.of(is_beyond)[k];
-      if (w == 0.)
+    ElasticSums sums;
+    add_elastic(sums, shapes, bonds, ends, u, i, slopes, stresses.flows(), inside, outside);
+    settle(i, sums.squares, sums.products);
+  }
+
+
+  template <int dim>
+  void Correspondence<dim>::find_on_lattice(const double *u) const
+  {
+    const bool flows = stresses.flows();
+    const auto take  = [&](const unsigned int i, const auto &sums) {
+      if (!bonds.is_on_lattice(i))
         return;
-      const Tensor<1, dim> change = ends.change(u, i, rows.neighbors[k]);
-      Tensor<1, dim>       beside = change - slopes * rows.moments[k] / w;
-      if (flows)
+      const double   volume  = families.nodes().volume(i);
+      Tensor<2, dim> changes = volume * sums.changes;
+      double         squares = volume * (sums.square + sums.off);
+      const Span     outside = span_of(bonds.beyond, i);
+      for (std::size_t k = outside.begin; k < outside.end; ++k)
         {
-          (is_beyond ? trial.changes.beyond : trial.changes.body)[k] = change;
-          beside -= vector_at<dim>(&rows.nonlinear.history[n_history * k]);
+          const Tensor<1, dim> change = ends.change(u, i, bonds.beyond.neighbors[k]);
+          add_change(changes, change, bonds.beyond.moments[k]);
+          squares += shapes.weights().beyond[k] * change.norm_square();
         }
-      squares += w * beside.norm_square();
-    });
-    typename J2Plasticity::Beside flow;
-    const double                  volume = families.nodes().volume(i);
-    ask(i, 3. * shape.shear * shape.stabilizer / volume * squares, nullptr, flow);
-    trial.squares[i]       = squares;
-    trial.ratios[i]        = flow.ratio;
-    double *const  numbers = trial.numbers.begin() + (flows ? n_of_flow : n_numbers) * i;
-    const double   c       = shape.stabilizer * flow.ratio;
-    Tensor<2, dim> stress(in_body<dim>(trial.responses[i].stress));
-    if (law.is_full)
-      stress = deformation_of(slopes) * stress;
-    write(numbers + at_force, Tensor<2, dim>(volume * (stress * inverse) - c * slopes));
-    numbers[at_stiffness] = c;
-    if (!flows)
+      trial.slopes[i] = changes * Tensor<2, dim>(shapes[i].inverse);
+      if (!flows)
+        {
+          settle(i, 0., 0.);
+          return;
+        }
+      if (stresses.has_flowed(i))
+        {
+          lattice.histories->want(i);
+          return;
+        }
+      squares -= scalar_product(changes, trial.slopes[i]);
+      settle(i, std::max(0., squares), 0.);
+      trial.squares[i] = 0.;
+      if (trial.ratios[i] < 1.)
+        lattice.histories->want(i);
+    };
+    lattice.sums->find_sums(u, flows, take);
+    if (!flows || !lattice.histories->wants_any())
       return;
-    write(numbers + at_slopes, slopes);
-    numbers[at_lost] = 1. - flow.ratio;
+    lattice.histories->take(u);
+    lattice.histories->sum_elastic(
+      [&](const unsigned int node) {
+        return node < shapes.size() ? &trial.slopes[node][0][0] : nullptr;
+      },
+      [&](const unsigned int i, const unsigned int at, const auto &sums) {
+        const double   volume = families.nodes().volume(i);
+        ElasticSums    all{volume * sums.squares[at], volume * sums.products[at]};
+        Tensor<1, dim> pull;
+        for (unsigned int d = 0; d < dim; ++d)
+          pull[d] = volume * sums.pulls[d][at];
+        const Span beyond = span_of(bonds.beyond, i);
+        add_elastic(all, shapes, bonds, ends, u, i, trial.slopes[i], true, {}, beyond);
+        settle(i, all.squares, all.products);
+        if (stresses.has_flowed(i))
+          trial.pulls.emplace_back(i, pull);
+      });
   }
 
 
@@ -348,14 +304,18 @@ namespace PeriDeal
     u.update_ghost_values();
     const double *const values = u.begin();
     ends.find(values);
-    trial.inverted = Trip();
-    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
-      find_at(values, i, inside, outside);
-    });
+    trial.known = false; // also of what throws below
+    trial.pulls.clear();
+    if (lattice.sums)
+      find_on_lattice(values);
+    for_each_family(bonds,
+                    shapes.size(),
+                    [&](const unsigned int i, const Span &inside, const Span &outside) {
+                      if (!bonds.is_on_lattice(i))
+                        find_at(values, i, inside, outside);
+                    });
     u.set_ghost_state(false);
-    steps.throw_faults(*law.law, families.nodes().communicator());
-    if (law.is_full)
-      throw_lowest_if_any(families.nodes().communicator(), trial.inverted);
+    stresses.throw_faults();
     trial.numbers.update_ghost_values();
     std::copy(values, values + u.locally_owned_size(), trial.displacement.begin());
     trial.known      = true;
@@ -367,7 +327,7 @@ namespace PeriDeal
   bool Correspondence<dim>::knows(const Vector &u) const
   {
     const bool same =
-      !law.is_linear && trial.known && // else thermal strains may be other ones
+      !is_linear() && trial.known && // else thermal strains may be other ones
       std::equal(u.begin(), u.begin() + u.locally_owned_size(), trial.displacement.begin());
     return Utilities::MPI::min(same ? 1 : 0, families.nodes().communicator()) > 0;
   }
@@ -376,13 +336,26 @@ namespace PeriDeal
   template <int dim>
   void Correspondence<dim>::find_forces(Vector &y, const Vector &u, const double t) const
   {
-    steps.now   = t;
+    const bool flows = stresses.flows();
+    stresses.set_time(t);
     trial.known = false;
     find(u);
     u.update_ghost_values();
     const double *const values  = u.begin();
     const double *const numbers = trial.numbers.begin();
-    const unsigned      n       = law.j2 != nullptr ? n_of_flow : n_numbers;
+    const unsigned      n       = flows ? n_of_flow : n_numbers;
+    if (lattice.sums)
+      lattice.sums->find_forces(y.begin(), values, numbers, n);
+    if (lattice.histories)
+      {
+        for (const auto &[i, pull] : trial.pulls)
+          for (unsigned int d = 0; d < dim; ++d)
+            y.local_element(dim * i + d) += numbers[n * i + at_stiffness] * pull[d];
+        lattice.histories->subtract_far(
+          y.begin(),
+          LatticeHistories<dim>::Of::plastic,
+          [=](const std::size_t node) { return numbers[n * node + at_stiffness]; });
+      }
     sum_forces_of_families(
       y,
       bonds,
@@ -394,11 +367,10 @@ namespace PeriDeal
           const auto           has_family) {
         const double *const   own    = numbers + n * i;
         const Tensor<1, dim> &moment = rows.moments[k];
-        const double          w      = weights.of(&rows == &bonds.beyond)[k];
+        const double          w      = shapes.weights().of(&rows == &bonds.beyond)[k];
         const Tensor<1, dim>  change = ends.change(values, i, j);
         Tensor<1, dim> force = times<dim>(own + at_force, moment) + w * own[at_stiffness] * change;
-        const double *const plastic = law.j2 != nullptr ? &rows.nonlinear.history[n_history * k] :
-                                                          nullptr;
+        const double *const plastic = flows ? &rows.nonlinear.history[n_history * k] : nullptr;
         if (plastic != nullptr)
           force -= w * own[at_stiffness] * vector_at<dim>(plastic);
         if constexpr (decltype(has_family)::value)
@@ -411,8 +383,6 @@ namespace PeriDeal
         return force;
       });
     u.set_ghost_state(false);
-    if (law.is_linear)
-      return;
     std::copy(y.begin(), y.begin() + y.locally_owned_size(), trial.forces.begin());
     trial.has_forces = true;
   }
@@ -422,31 +392,72 @@ namespace PeriDeal
   double Correspondence<dim>::energy_of(const std::vector<unsigned int> &list,
                                         const Vector                    &u) const
   {
-    if (law.is_linear)
-      {
-        u.update_ghost_values();
-        ends.find(u.begin());
-        for (const unsigned int i : list)
-          find_at(u.begin(), i, span_of(bonds.body, i), span_of(bonds.beyond, i));
-        u.set_ghost_state(false);
-      }
-    else if (!knows(u))
-      find(u);
-    double sum = 0.;
+    u.update_ghost_values();
+    ends.find(u.begin());
+    trial.known = false;
+    double sum  = 0.;
     for (const unsigned int i : list)
       {
-        sum += families.nodes().volume(i) * trial.responses[i].stored;
-        if (law.j2 == nullptr) // which stores it itself
-          sum += 0.5 * shapes[i].stabilizer * trial.squares[i];
+        Tensor<2, dim> changes;
+        const auto change_at = [&](const unsigned int j) { return ends.change(u.begin(), i, j); };
+        shapes.for_each_bond(
+          i,
+          [&](const unsigned int j, const Tensor<1, dim> &moment, const double, std::size_t) {
+            add_change(changes, change_at(j), moment);
+          });
+        trial.slopes[i] = changes * Tensor<2, dim>(shapes[i].inverse);
+        double squares  = 0.;
+        shapes.for_each_bond(
+          i,
+          [&](const unsigned int j, const Tensor<1, dim> &moment, const double w, std::size_t) {
+            if (w > 0.)
+              squares += w * (change_at(j) - trial.slopes[i] * moment / w).norm_square();
+          });
+        settle(i, squares, squares);
+        sum +=
+          families.nodes().volume(i) * stresses[i].stored + 0.5 * shapes[i].stabilizer * squares;
       }
+    u.set_ghost_state(false);
+    stresses.throw_faults();
     return Utilities::MPI::sum(sum, families.nodes().communicator());
+  }
+
+
+  template <int dim>
+  double Correspondence<dim>::stored(const Vector &u, const Vector &minus_F) const
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < shapes.size(); ++i)
+      {
+        const double c = shapes[i].stabilizer, r = trial.ratios[i];
+        double       of_point = stresses[i].stored;
+        if (lattice.sums)
+          {
+            of_point -= 0.5 * (stresses.stress(i) * symmetrize(trial.slopes[i]));
+            sum += 0.5 * c * r * (r * trial.squares[i] - trial.products[i]);
+          }
+        else
+          sum += 0.5 * c * r * r * trial.squares[i];
+        sum += families.nodes().volume(i) * of_point;
+      }
+    for (unsigned int k = 0; lattice.sums && k < u.locally_owned_size(); ++k)
+      sum += 0.5 * minus_F.local_element(k) * u.local_element(k);
+    return sum;
   }
 
 
   template <int dim>
   double Correspondence<dim>::energy(const Vector &u) const
   {
-    return energy_of(bonds.body.nodes, u);
+    if (!knows(u) || (lattice.sums && !trial.has_forces))
+      {
+        Vector y(trial.forces);
+        if (lattice.sums)
+          find_forces(y, u, stresses.now());
+        else
+          find(u);
+      }
+    return Utilities::MPI::sum(stored(u, trial.forces), families.nodes().communicator());
   }
 
 
@@ -457,7 +468,7 @@ namespace PeriDeal
       find(u);
     double sum = 0.;
     for (unsigned int i = 0; i < shapes.size(); ++i)
-      sum += families.nodes().volume(i) * trial.responses[i].dissipated;
+      sum += families.nodes().volume(i) * stresses[i].dissipated;
     return Utilities::MPI::sum(sum, families.nodes().communicator());
   }
 
@@ -465,46 +476,55 @@ namespace PeriDeal
   template <int dim>
   double Correspondence<dim>::accept(const Vector &u, const double t)
   {
-    if (law.is_linear)
+    if (is_linear())
       return 0.;
-    if (law.is_full) // which remembers and dissipates nothing
+    if (stresses.is_full()) // which remembers and dissipates nothing
       {
-        steps.accept(t, false);
+        stresses.accept(t, false, false);
         return 0.;
       }
-    if (!knows(u) || !trial.has_forces || steps.now != t)
+    if (!knows(u) || !trial.has_forces || stresses.now() != t)
       {
         Vector y(trial.forces);
         find_forces(y, u, t);
       }
-    double stored = 0., n_flow = 0.;
+    double n_flow = 0.;
     for (unsigned int i = 0; i < shapes.size(); ++i)
-      {
-        stored += families.nodes().volume(i) * trial.responses[i].stored;
-        if (law.j2 == nullptr)
-          stored += 0.5 * shapes[i].stabilizer * trial.squares[i];
-        n_flow += law.j2 == nullptr || trial.ratios[i] < 1. ? 1. : 0.;
-      }
-    bool         flows = false;
-    const double dissipated =
-      accepted.take(u, trial.forces, stored, n_flow, families.nodes().communicator(), flows);
-    const double changes = trial.known && law.states != trial.states ? 1. : 0.;
-    if (flows && trial.known)
-      remember();
-    steps.accept(t, Utilities::MPI::max(changes, families.nodes().communicator()) > 0.);
+      n_flow += !stresses.flows() || trial.ratios[i] < 1. ? 1. : 0.;
+    bool         flows      = false;
+    const double dissipated = accepted.take(u,
+                                            trial.forces,
+                                            stored(u, trial.forces),
+                                            n_flow,
+                                            families.nodes().communicator(),
+                                            flows);
+    const bool   changes    = !stresses.same_states();
+    stresses.accept(t, flows, changes);
+    if (flows && stresses.flows())
+      remember(u);
+    trial.known = trial.known && !flows;
     return dissipated;
   }
 
 
   template <int dim>
-  void Correspondence<dim>::remember()
+  void Correspondence<dim>::remember(const Vector &u)
   {
-    law.states  = trial.states;
-    trial.known = false;
-    if (law.j2 == nullptr)
-      return;
     const double *const numbers = trial.numbers.begin();
-    const auto          keep    = [&](const unsigned int    node,
+    u.update_ghost_values();
+    const double *const values = u.begin();
+    ends.find(values);
+    if (lattice.histories)
+      {
+        for (unsigned int i = 0; i < families.nodes().n_local(); ++i)
+          if (numbers[n_of_flow * i + at_lost] > 0.)
+            lattice.histories->want(i);
+        lattice.histories->take(values);
+        lattice.histories->let_flow(
+          [=](const unsigned int i) { return numbers + n_of_flow * i + at_slopes; },
+          [=](const unsigned int i) { return numbers[n_of_flow * i + at_lost]; });
+      }
+    const auto keep = [&](const unsigned int    node,
                           const Tensor<1, dim> &change,
                           const Tensor<1, dim> &xi,
                           double               *plastic) {
@@ -515,43 +535,40 @@ namespace PeriDeal
       for (unsigned int d = 0; d < dim; ++d)
         plastic[d] += of_node[at_lost] * (beside[d] - plastic[d]);
     };
-    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
-      for (std::size_t k = inside.begin; k < inside.end; ++k)
-        {
-          const Tensor<1, dim> xi      = bonds.body.moments[k] / weights.body[k];
-          double *const        plastic = &bonds.body.nonlinear.history[n_history * k];
-          keep(i, trial.changes.body[k], xi, plastic);
-          keep(bonds.body.neighbors[k], trial.changes.body[k], xi, plastic + dim);
-        }
-      for (std::size_t k = outside.begin; k < outside.end; ++k)
-        if (weights.beyond[k] > 0.)
-          keep(i,
-               trial.changes.beyond[k],
-               bonds.beyond.moments[k] / weights.beyond[k],
-               &bonds.beyond.nonlinear.history[n_history * k]);
-    });
+    for_each_family(
+      bonds,
+      shapes.size(),
+      [&](const unsigned int i, const Span &inside, const Span &outside) {
+        for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
+          const bool         is_beyond = &rows == &bonds.beyond;
+          const double       w         = shapes.weights().of(is_beyond)[k];
+          const unsigned int j         = rows.neighbors[k];
+          if (w == 0. || (numbers[n_of_flow * i + at_lost] == 0. &&
+                          (is_beyond || numbers[n_of_flow * j + at_lost] == 0.)))
+            return;
+          const Tensor<1, dim> xi = rows.moments[k] / w, change = ends.change(values, i, j);
+          double *const        plastic =
+            &(is_beyond ? bonds.beyond : bonds.body).nonlinear.history[n_history * k];
+          keep(i, change, xi, plastic);
+          if (!is_beyond)
+            keep(j, change, xi, plastic + dim);
+        });
+      });
+    u.set_ghost_state(false);
   }
 
 
   template <int dim>
   void Correspondence<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
-    if (law.is_linear)
+    if (is_linear())
       return;
-    const unsigned int n_state = law.law->n_state();
-    Vector             number(families.nodes().partitioner());
-    for (unsigned int s = 0; s < n_state; ++s)
-      {
-        for (unsigned int i = 0; i < shapes.size(); ++i)
-          number.local_element(i) = law.states[n_state * i + s];
-        archive.exchange("state " + std::to_string(s), number, keys);
-        for (unsigned int i = 0; i < shapes.size(); ++i)
-          law.states[n_state * i + s] = number.local_element(i);
-      }
+    stresses.exchange(archive, keys);
     accepted.exchange(archive, keys);
-    steps.exchange(archive);
-    if (law.j2 != nullptr)
+    if (stresses.flows())
       exchange_histories(bonds, archive, keys, n_history);
+    if (lattice.histories)
+      lattice.histories->exchange(archive, keys);
     if (archive.loads())
       trial.known = false;
   }
@@ -560,100 +577,179 @@ namespace PeriDeal
   template <int dim>
   void Correspondence<dim>::linearize(const Vector &u)
   {
-    if (law.is_linear)
+    if (is_linear())
       return;
     if (!knows(u))
       find(u);
+    if (stresses.is_full())
+      {
+        shapes.deformed.resize(shapes.size());
+        for (unsigned int i = 0; i < shapes.size(); ++i)
+          {
+            auto                &at = shapes.deformed[i];
+            J2Plasticity::Beside none;
+            stresses.ask(i, trial.slopes[i], none, &at.stiffness);
+            at.gradient = deformation_of(trial.slopes[i]);
+            at.stress   = stresses.stress(i);
+          }
+        stresses.throw_faults();
+        return;
+      }
     double n_flow = 0.;
     tangent.flows.resize(shapes.size());
     for (unsigned int i = 0; i < shapes.size(); ++i)
       {
-        Flow                         &at = tangent.flows[i];
-        typename J2Plasticity::Beside flow;
-        ask(i,
-            3. * shapes[i].shear * shapes[i].stabilizer / families.nodes().volume(i) *
-              trial.squares[i],
-            &at.stiffness,
-            flow);
-        at.stress_slope = in_body<dim>(flow.stress_slope);
-        at.ratio        = flow.ratio;
-        at.ratio_slope  = flow.ratio_slope;
-        at.deformation  = deformation_of(trial.slopes[i]);
-        at.stress       = in_body<dim>(trial.responses[i].stress);
-        n_flow += law.j2 == nullptr || flow.ratio < 1. ? 1. : 0.;
+        Flow                &at = tangent.flows[i];
+        J2Plasticity::Beside flow;
+        flow.square = 3. * shapes[i].shear * shapes[i].stabilizer / families.nodes().volume(i) *
+                      trial.squares[i];
+        stresses.ask(i, trial.slopes[i], flow, &at.stiffness);
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = a; b < dim; ++b)
+            at.stress_slope[a][b] = flow.stress_slope[a][b];
+        at.ratio       = flow.ratio;
+        at.ratio_slope = flow.ratio_slope;
+        n_flow += !stresses.flows() || flow.ratio < 1. ? 1. : 0.;
       }
-    steps.throw_faults(*law.law, families.nodes().communicator());
+    stresses.throw_faults();
     tangent.any = Utilities::MPI::max(n_flow, families.nodes().communicator()) > 0.;
-    if (!tangent.any || law.j2 == nullptr)
-      return;
+    if (tangent.any && stresses.flows())
+      keep_elastic(u);
+  }
+
+
+  template <int dim>
+  void Correspondence<dim>::keep_elastic(const Vector &u)
+  {
     const double *const numbers = trial.numbers.begin();
+    u.update_ghost_values();
+    const double *const values = u.begin();
+    ends.find(values);
+    if (lattice.histories)
+      {
+        tangent.pulls.clear();
+        for (unsigned int i = 0; i < families.nodes().n_local(); ++i)
+          if (numbers[n_of_flow * i + at_lost] > 0.)
+            lattice.histories->want(i);
+        lattice.histories->take(values);
+        lattice.histories->keep_elastic(
+          [=](const unsigned int i) { return numbers + n_of_flow * i + at_slopes; },
+          [&](const unsigned int i, const unsigned int at, const auto &sums) {
+            Tensor<1, dim> pull;
+            for (unsigned int d = 0; d < dim; ++d)
+              pull[d] = families.nodes().volume(i) * sums.pulls[d][at];
+            if (bonds.is_on_lattice(i))
+              tangent.pulls.emplace_back(i, pull);
+          });
+      }
     tangent.own.resize(bonds);
     tangent.far.resize(bonds);
-    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
-      for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
-        const bool is_beyond = &rows == &bonds.beyond;
-        if (weights.of(&rows == &bonds.beyond)[k] == 0.)
-          return;
-        const Tensor<1, dim> xi     = rows.moments[k] / weights.of(&rows == &bonds.beyond)[k],
-                             change = is_beyond ? trial.changes.beyond[k] : trial.changes.body[k];
-        const double *const plastic = &rows.nonlinear.history[n_history * k];
-        const auto          elastic = [&](const unsigned int node, const double *of_end) {
-          return change - times<dim>(numbers + n_of_flow * node + at_slopes, xi) -
-                 vector_at<dim>(of_end);
-        };
-        (is_beyond ? tangent.own.beyond : tangent.own.body)[k] = elastic(i, plastic);
-        if (!is_beyond)
-          tangent.far.body[k] = elastic(rows.neighbors[k], plastic + dim);
+    for_each_family(
+      bonds,
+      shapes.size(),
+      [&](const unsigned int i, const Span &inside, const Span &outside) {
+        for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
+          const bool   is_beyond = &rows == &bonds.beyond;
+          const double w         = shapes.weights().of(is_beyond)[k];
+          if (w == 0.)
+            return;
+          const unsigned int   j  = rows.neighbors[k];
+          const Tensor<1, dim> xi = rows.moments[k] / w, change = ends.change(values, i, j);
+          const double *const  plastic = &rows.nonlinear.history[n_history * k];
+          const auto           elastic = [&](const unsigned int node, const double *of_end) {
+            return change - times<dim>(numbers + n_of_flow * node + at_slopes, xi) -
+                   vector_at<dim>(of_end);
+          };
+          tangent.own.of(is_beyond)[k] = elastic(i, plastic);
+          if (!is_beyond)
+            tangent.far.body[k] = elastic(j, plastic + dim);
+        });
       });
-    });
+    u.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  void Correspondence<dim>::settle_change(const unsigned int    i,
+                                          const Tensor<2, dim> &slopes,
+                                          const double          products) const
+  {
+    const auto          &shape  = shapes[i];
+    const double         volume = families.nodes().volume(i);
+    const Flow *const    at     = tangent.any ? &tangent.flows[i] : nullptr;
+    const Tensor<2, dim> inverse(shape.inverse);
+    const auto           strain = symmetrize(slopes);
+    auto                 stress = (at != nullptr ? at->stiffness : shapes.elastic(i)) * strain;
+    double               c = shape.stabilizer, of_ratio = 0.;
+    if (at != nullptr && stresses.flows() && at->ratio < 1.)
+      {
+        const double of_square = 6. * shape.shear * shape.stabilizer / volume * products;
+        stress += of_square * at->stress_slope;
+        of_ratio = shape.stabilizer *
+                   (6. * shape.shear * (at->stress_slope * strain) + at->ratio_slope * of_square);
+        c *= at->ratio;
+      }
+    const Tensor<2, dim> pull = shapes.deformed.empty() ? Tensor<2, dim>(stress) :
+                                                          shapes.deformed[i].change_of_pull(slopes);
+    double *const        numbers =
+      tangent.changes.begin() + (stresses.flows() ? n_numbers + 1 : n_numbers) * i;
+    write(numbers + at_force, Tensor<2, dim>(volume * (pull * inverse) - c * slopes));
+    numbers[at_stiffness] = c;
+    if (stresses.flows())
+      numbers[at_slopes] = of_ratio;
   }
 
 
   template <int dim>
   void Correspondence<dim>::find_changes(const Vector &x) const
   {
-    const bool          flows  = tangent.any && law.j2 != nullptr;
-    const unsigned      n      = law.j2 != nullptr ? n_numbers + 1 : n_numbers;
+    const bool          flows  = tangent.any && stresses.flows();
     const double *const values = x.begin();
     ends.find(values);
-    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
-      const Shape         &shape = shapes[i];
-      const Tensor<2, dim> inverse(shape.inverse),
-        slopes           = sum_of_changes(bonds, ends, values, i, inside, outside) * inverse;
-      const bool is_full = tangent.any && law.is_full;
-      const Full strain =
-        symmetrize(is_full ? transpose(tangent.flows[i].deformation) * slopes : slopes);
-      Full         stress = (tangent.any ? tangent.flows[i].stiffness : shape.elastic) * strain;
-      double       c = shape.stabilizer, of_ratio = 0.;
-      const double volume = families.nodes().volume(i);
-      if (const Flow *const at = flows ? &tangent.flows[i] : nullptr;
-          at != nullptr && at->ratio < 1.)
-        {
-          double sum = 0.; // of W z_e . du
-          for_each_bond(bonds,
-                        inside,
-                        outside,
-                        [&](const BondRows<dim> &rows, const std::size_t k) {
-                          sum += weights.of(&rows == &bonds.beyond)[k] *
-                                 (tangent.own.of(&rows == &bonds.beyond)[k] *
-                                  ends.change(values, i, rows.neighbors[k]));
-                        });
-          const double of_square = 6. * shape.shear * shape.stabilizer / volume * sum;
-          stress += of_square * at->stress_slope;
-          of_ratio = shape.stabilizer *
-                     (6. * shape.shear * (at->stress_slope * strain) + at->ratio_slope * of_square);
-          c *= at->ratio;
-        }
-      Tensor<2, dim> pull(stress);
-      if (is_full)
-        pull =
-          tangent.flows[i].deformation * pull + slopes * Tensor<2, dim>(tangent.flows[i].stress);
-      double *const numbers = tangent.changes.begin() + n * i;
-      write(numbers + at_force, Tensor<2, dim>(volume * (pull * inverse) - c * slopes));
-      numbers[at_stiffness] = c;
-      if (law.j2 != nullptr)
-        numbers[at_slopes] = of_ratio;
-    });
+    const auto settle_all = [&](const unsigned int    i,
+                                const Tensor<2, dim> &changes,
+                                double                products,
+                                const Span           &inside,
+                                const Span           &outside) {
+      if (flows && tangent.flows[i].ratio < 1.)
+        for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
+          const bool is_beyond = &rows == &bonds.beyond;
+          products += shapes.weights().of(is_beyond)[k] *
+                      (tangent.own.of(is_beyond)[k] * ends.change(values, i, rows.neighbors[k]));
+        });
+      settle_change(i, changes * Tensor<2, dim>(shapes[i].inverse), products);
+    };
+    if (lattice.sums)
+      {
+        if (flows)
+          {
+            tangent.products.assign(shapes.size(), 0.);
+            for (const auto &[i, pull] : tangent.pulls)
+              lattice.histories->want(i);
+            lattice.histories->take(values);
+            lattice.histories->sum_products([&](const unsigned int i, const double sum) {
+              tangent.products[i] = families.nodes().volume(i) * sum;
+            });
+          }
+        lattice.sums->find_sums(values, false, [&](const unsigned int i, const auto &sums) {
+          if (!bonds.is_on_lattice(i))
+            return;
+          Tensor<2, dim> changes = families.nodes().volume(i) * sums.changes;
+          const Span     outside = span_of(bonds.beyond, i);
+          changes += sum_of_changes(bonds, ends, values, i, {}, outside);
+          settle_all(i, changes, flows ? tangent.products[i] : 0., {}, outside);
+        });
+      }
+    for_each_family(bonds,
+                    shapes.size(),
+                    [&](const unsigned int i, const Span &inside, const Span &outside) {
+                      if (!bonds.is_on_lattice(i))
+                        settle_all(i,
+                                   sum_of_changes(bonds, ends, values, i, inside, outside),
+                                   0.,
+                                   inside,
+                                   outside);
+                    });
     tangent.changes.update_ghost_values();
   }
 
@@ -661,11 +757,23 @@ namespace PeriDeal
   template <int dim>
   void Correspondence<dim>::multiply(Vector &y, const Vector &x) const
   {
-    const bool     flows = tangent.any && law.j2 != nullptr;
-    const unsigned n     = law.j2 != nullptr ? n_numbers + 1 : n_numbers;
+    const bool     flows = tangent.any && stresses.flows();
+    const unsigned n     = stresses.flows() ? n_numbers + 1 : n_numbers;
     x.update_ghost_values();
     find_changes(x);
     const double *const values = x.begin(), *const numbers = tangent.changes.begin();
+    if (lattice.sums)
+      lattice.sums->find_forces(y.begin(), values, numbers, n);
+    if (lattice.histories && flows)
+      {
+        for (const auto &[i, pull] : tangent.pulls)
+          for (unsigned int d = 0; d < dim; ++d)
+            y.local_element(dim * i + d) -= numbers[n * i + at_slopes] * pull[d];
+        lattice.histories->subtract_far(
+          y.begin(),
+          LatticeHistories<dim>::Of::elastic,
+          [=](const std::size_t node) { return -numbers[n * node + at_slopes]; });
+      }
     sum_forces_of_families(y,
                            bonds,
                            ends,
@@ -690,7 +798,7 @@ namespace PeriDeal
                                  if (flows)
                                    beside += far[at_slopes] * tangent.far.body[k];
                                }
-                             return force + weights.of(&rows == &bonds.beyond)[k] *
+                             return force + shapes.weights().of(&rows == &bonds.beyond)[k] *
                                               (c * ends.change(values, i, j) + beside);
                            });
     x.set_ghost_state(false);
@@ -705,135 +813,30 @@ namespace PeriDeal
     NodalTensors<dim> result;
     for (unsigned int i = 0; i < shapes.size(); ++i)
       {
-        const Tensor<2, dim>      &slopes   = trial.slopes[i];
-        const StressLaw::Response &response = trial.responses[i];
-        result.stress.push_back(
-          in_body<dim>(law.is_full ? cauchy_stress(slopes, response) : response.stress));
-        result.strain.push_back(law.is_full ? strain_of(slopes) : symmetrize(slopes));
+        const StressLaw::Tensor stress = stresses.cauchy(i, trial.slopes[i]);
+        result.stress.push_back(in_body<dim>(stress));
+        result.strain.push_back(stresses.strain(trial.slopes[i]));
+        if (dim == 2)
+          result.out_of_plane.push_back(stress[2][2]);
       }
     return result;
   }
 
 
   template <int dim>
-  double Correspondence<dim>::out_of_plane(const unsigned int i) const
-  {
-    const StressLaw::Response &response = trial.responses[i];
-    return (law.is_full ? cauchy_stress(trial.slopes[i], response) : response.stress)[2][2];
-  }
-
-
-  template <int dim>
-  std::vector<std::pair<std::string, std::vector<double>>> Correspondence<dim>::shown() const
-  {
-    std::vector<std::pair<std::string, std::vector<double>>> list;
-    for (const auto &[name, number] : law.law->shown())
-      {
-        list.emplace_back(name, std::vector<double>());
-        for (unsigned int i = 0; i < shapes.size(); ++i)
-          list.back().second.push_back(law.states[i * law.law->n_state() + number]);
-      }
-    return list;
-  }
-
-
-  template <int dim>
-  void Correspondence<dim>::find_diagonal(Vector &diagonal) const
-  {
-    Vector sum(diagonal.get_partitioner());
-    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
-      const Shape &shape = shapes[i];
-      // A displacement along d of one node, which the gradient e_d b^T follows.
-      const auto stiffness = [&](const unsigned int d, const Tensor<1, dim> &b) {
-        double product = 0.;
-        for (unsigned int a = 0; a < dim; ++a)
-          for (unsigned int c = 0; c < dim; ++c)
-            product += b[a] * b[c] * shape.elastic[d][a][d][c];
-        return families.nodes().volume(i) * product;
-      };
-      Tensor<1, dim> of_node;
-      double         all = 0.;
-      for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
-        const Tensor<1, dim> &moment = rows.moments[k], b = shape.inverse * moment;
-        const double          aside =
-          shape.stabilizer * (weights.of(&rows == &bonds.beyond)[k] - b * moment);
-        const unsigned int j = rows.neighbors[k];
-        of_node += moment;
-        all += weights.of(&rows == &bonds.beyond)[k];
-        const auto add = [&](const unsigned int node, const unsigned int d, const double square) {
-          sum.local_element(dim * node + d) += square * (stiffness(d, b) + aside);
-        };
-        if (!ends.is_fictitious(j))
-          for (unsigned int d = 0; d < dim; ++d)
-            add(j, d, 1.);
-        else // as if these nodes had no other part in the family
-          ends.images->for_each_term(ends.image(j), [&](const auto &term) {
-            for (unsigned int d = 0; d < dim; ++d)
-              add(term.node, d, term.of_component(d) * term.of_component(d));
-          });
-      });
-      const Tensor<1, dim> b = shape.inverse * of_node;
-      for (unsigned int d = 0; d < dim; ++d)
-        sum.local_element(dim * i + d) += stiffness(d, b) + shape.stabilizer * (all - b * of_node);
-    });
-    sum.compress(VectorOperation::add);
-    std::copy(sum.begin(), sum.begin() + sum.locally_owned_size(), diagonal.begin());
-  }
-
-
-  template <int dim>
-  Vector Correspondence<dim>::row_sums() const
-  {
-    const Nodes<dim> &nodes = families.nodes();
-    Vector            rows(nodes.partitioner());
-    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
-      const Shape &shape   = shapes[i];
-      double       modulus = largest_modulus(shape.elastic);
-      if (tangent.any && law.is_full)
-        modulus =
-          largest_modulus(tangent.flows[i].stiffness) * tangent.flows[i].deformation.norm_square() +
-          tangent.flows[i].stress.norm();
-      const double kappa =
-        std::max(shape.stabilizer,
-                 modulus * nodes.volume(i) * -smallest_eigenvalue(-shape.inverse));
-      for (std::size_t k = inside.begin; k < inside.end; ++k)
-        {
-          rows.local_element(i) += 2. * kappa * weights.body[k];
-          rows.local_element(bonds.body.neighbors[k]) += 2. * kappa * weights.body[k];
-        }
-      for (std::size_t k = outside.begin; k < outside.end; ++k)
-        {
-          const FictitiousImages<dim> &images = *ends.images;
-          const unsigned int           image  = ends.image(bonds.beyond.neighbors[k]);
-          const double size = kappa * weights.beyond[k] * (1. + images.sum_of_factors(image));
-          rows.local_element(i) += size;
-          images.for_each_term(image, [&](const auto &term) {
-            double largest = 0.;
-            for (unsigned int d = 0; d < dim; ++d)
-              largest = std::max(largest, std::abs(term.of_component(d)));
-            rows.local_element(term.node) += size * largest;
-          });
-        }
-    });
-    rows.compress(VectorOperation::add);
-    return rows;
-  }
-
-
-  template <int dim>
   std::size_t Correspondence<dim>::memory_consumption() const
   {
-    const auto of = [](const Changes &list) {
-      return (list.body.capacity() + list.beyond.capacity()) * sizeof(Tensor<1, dim>);
-    };
-    return (law.parameters.capacity() + law.states.capacity() + weights.body.capacity() +
-            weights.beyond.capacity() + trial.squares.capacity() + trial.ratios.capacity() +
-            trial.states.capacity()) *
+    return stresses.memory_consumption() + shapes.memory_consumption() +
+           (lattice.sums ? lattice.sums->memory_consumption() : 0) +
+           (lattice.histories ? lattice.histories->memory_consumption() : 0) +
+           (trial.squares.capacity() + trial.ratios.capacity() + trial.products.capacity() +
+            tangent.products.capacity()) *
              sizeof(double) +
-           shapes.capacity() * sizeof(Shape) + tangent.flows.capacity() * sizeof(Flow) +
-           trial.responses.capacity() * sizeof(trial.responses[0]) +
-           trial.slopes.capacity() * sizeof(trial.slopes[0]) + of(trial.changes) + of(tangent.own) +
-           of(tangent.far) + trial.numbers.memory_consumption() +
+           trial.slopes.capacity() * sizeof(trial.slopes[0]) +
+           trial.pulls.capacity() * sizeof(trial.pulls[0]) +
+           tangent.pulls.capacity() * sizeof(tangent.pulls[0]) +
+           tangent.flows.capacity() * sizeof(Flow) + tangent.own.memory_consumption() +
+           tangent.far.memory_consumption() + trial.numbers.memory_consumption() +
            tangent.changes.memory_consumption() + trial.displacement.memory_consumption() +
            trial.forces.memory_consumption() + accepted.displacement.memory_consumption() +
            accepted.forces.memory_consumption();

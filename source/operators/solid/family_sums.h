@@ -29,16 +29,20 @@ namespace PeriDeal
   }
 
 
-  /** visit(i, in the body, beyond) of all owned nodes, which all store their bonds. */
+  /** visit(i, in the body, beyond) of n owned nodes; of some none in the body may be stored. */
   template <int dim, typename Visit>
-  void for_each_family(const BondTable<dim> &bonds, const Visit &visit)
+  void for_each_family(const BondTable<dim> &bonds, const unsigned int n, const Visit &visit)
   {
     const BondRows<dim> &beyond = bonds.beyond;
     std::size_t          row    = 0;
-    for (unsigned int i = 0; i < bonds.body.nodes.size(); ++i)
+    for (unsigned int i = 0; i < n; ++i)
       {
-        const Span inside{bonds.body.starts[i], bonds.body.starts[i + 1]};
-        Span       outside;
+        Span inside, outside;
+        if (!bonds.is_on_lattice(i))
+          {
+            const std::size_t k = bonds.row_in_body(i);
+            inside              = {bonds.body.starts[k], bonds.body.starts[k + 1]};
+          }
         if (row < beyond.nodes.size() && beyond.nodes[row] == i)
           {
             outside = {beyond.starts[row], beyond.starts[row + 1]};
@@ -49,9 +53,18 @@ namespace PeriDeal
   }
 
 
+  /** Of all owned nodes, which all store their bonds. */
+  template <int dim, typename Visit>
+  void for_each_family(const BondTable<dim> &bonds, const Visit &visit)
+  {
+    for_each_family(bonds, static_cast<unsigned int>(bonds.body.nodes.size()), visit);
+  }
+
+
   /**
    * y = -F of the forces force(i, rows, bond, far end, whether that has a family), by which bonds
-   * pull at node i. Collective.
+   * pull at node i; where y has that of bonds in the body that are not stored those beyond are
+   * added. Collective.
    */
   template <int dim, typename Force>
   void sum_forces_of_families(Vector               &y,
@@ -62,7 +75,8 @@ namespace PeriDeal
     const FictitiousImages<dim> *images = ends.images.get();
     if (images)
       images->begin_forces();
-    for_each_family(bonds, [&](const unsigned int i, const Span &inside, const Span &outside) {
+    const unsigned int n = y.locally_owned_size() / dim;
+    for_each_family(bonds, n, [&](const unsigned int i, const Span &inside, const Span &outside) {
       dealii::Tensor<1, dim> sum;
       for (std::size_t k = inside.begin; k < inside.end; ++k)
         sum += force(i, bonds.body, k, bonds.body.neighbors[k], std::true_type());
@@ -73,8 +87,12 @@ namespace PeriDeal
           sum += of_bond;
           images->pull(ends.image(j), of_bond);
         }
+      const bool has_some = bonds.is_on_lattice(i);
       for (unsigned int d = 0; d < dim; ++d)
-        y.local_element(dim * i + d) = -sum[d];
+        {
+          double &all = y.local_element(dim * i + d);
+          all         = has_some ? all - sum[d] : -sum[d];
+        }
     });
     if (images)
       images->pass_on(y);

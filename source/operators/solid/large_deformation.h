@@ -25,6 +25,18 @@ namespace PeriDeal
   }
 
 
+  /** What is in the body. */
+  template <int dim>
+  dealii::SymmetricTensor<2, dim> in_body(const StressLaw::Tensor &full)
+  {
+    dealii::SymmetricTensor<2, dim> part;
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a; b < dim; ++b)
+        part[a][b] = full[a][b];
+    return part;
+  }
+
+
   /** F of a displacement gradient. */
   template <int dim>
   dealii::Tensor<2, dim> deformation_of(const dealii::Tensor<2, dim> &gradient)

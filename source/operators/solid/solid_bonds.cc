@@ -123,7 +123,8 @@ namespace PeriDeal
                                                           YieldingFamilies<dim>::n_history;
     rows.find_springs(body.elasticity.has_full_kinematics(),
                       of_scene.softens() ? BondSoftness::n : n_history);
-    sums.take_lattice();
+    if (!body.elasticity.is_correspondence())
+      sums.take_lattice();
     if (body.elasticity.is_correspondence())
       by_family = std::make_unique<Correspondence<dim>>(families, ends, rows, laws, thermal, body);
     else if (of_scene.yields())

@@ -102,7 +102,7 @@ namespace PeriDeal
         {
           Vector shear(nodes.partitioner());
           for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-            shear.local_element(i) = nodal->shear(i);
+            shear.local_element(i) = nodal->shapes[i].shear;
           shear.update_ghost_values();
           for (unsigned int i = 0; i < nodes.n_local(); ++i)
             extension[i] = dim * (dim + 2.) * shear.local_element(i);
@@ -314,7 +314,7 @@ namespace PeriDeal
     const Nodes<dim> &nodes = bonds.families.nodes();
     if (const auto *const nodal = bonds.correspondence())
       {
-        nodal->find_diagonal(diagonal);
+        nodal->shapes.find_diagonal(diagonal);
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           hold_diagonal(bonds, i, diagonal);
         return;
@@ -399,7 +399,7 @@ namespace PeriDeal
                        const bool             of_tangent)
   {
     if (const auto *const nodal = bonds.correspondence())
-      return nodal->row_sums();
+      return nodal->shapes.row_sums();
     Vector     rows(bonds.families.nodes().partitioner());
     const bool across = bonds.kinematics.is_full();
     for (const unsigned int i : bonds.rows.beyond.nodes)

@@ -421,7 +421,7 @@ namespace PeriDeal
                   (solid.ends.images ? solid.ends.images->memory_consumption() : 0) +
                   (solid.by_family ? solid.by_family->memory_consumption() : 0) +
                   contact->memory_consumption();
-    size.form = solid.sums.has_lattice() ? "lattice" : "stored";
+    size.form = solid.rows.body.leaves_out() ? "lattice" : "stored";
     return size;
   }
 

@@ -35,7 +35,13 @@ namespace PeriDeal
 
     bool is_packed() const
     {
-      return !units.empty() && units.size() < BondCode::gone;
+      return may_pack && !units.empty() && units.size() < BondCode::gone;
+    }
+
+    /** Some nodes have no row, or had none at first: a lattice knows their bonds. */
+    bool leaves_out() const
+    {
+      return !units.empty();
     }
 
     /** The node in whose row a bond is. */
@@ -113,6 +119,7 @@ namespace PeriDeal
     // Where rows are packed, instead of these:
     std::vector<BondCode::Code>                 codes;
     std::vector<UnitBond<dim>>                  units; // also of a lattice with too many of them
+    bool                                        may_pack = true;
     std::vector<std::pair<std::size_t, double>> parts; // what cracks leave of bonds, ascending
 
     BondState state;

@@ -3,14 +3,11 @@
 
 #pragma once
 
-#include <perideal/base/diverged.h>
-#include <perideal/laws/j2_plasticity.h>
-#include <perideal/operators/solid/bond_table.h>
 #include <perideal/operators/solid/family_forces.h>
 #include <perideal/operators/solid/nodal_tensors.h>
+#include <perideal/operators/solid/node_shapes.h>
+#include <perideal/operators/solid/node_stresses.h>
 #include <perideal/operators/solid/step_work.h>
-#include <perideal/operators/solid/stress_steps.h>
-#include <perideal/operators/solid/thermal_strains.h>
 
 #include <memory>
 #include <vector>
@@ -18,6 +15,12 @@
 namespace PeriDeal
 {
   struct Span;
+
+  template <int dim>
+  class GradientLattice;
+
+  template <int dim>
+  class LatticeHistories;
 
 
   /**
@@ -42,10 +45,16 @@ namespace PeriDeal
    * z_e, and z_p, which each end of a bond has its own of, grows by (1 - r) z_e. Both stand in the
    * rows of both ends, that of the row's own node first, both along the row's own bond.
    *
+   * Nodes that store no bonds (BondTable) have their sums from convolutions (GradientLattice), and
+   * the z_p of those that have flowed in LatticeHistories. Of others B is bounded first, from
+   * sum W |z|^2 = sum W |du|^2 - G : sum W du xi^T, and found bond by bond only where the bound
+   * might let them flow. The energy of the body needs no B of them: what z stores is half of the
+   * work of its forces, so that with F.u all of it follows from stresses.
+   *
    * With full kinematics the law is one of large deformations (StressLaw), and P = F S stands for
    * sigma, F = 1 + G. Then z = (xi + du) - F xi is what the deformed bonds have beside F; no
    * rotation changes |z|. Where a node is inside out, all that is collective throws Diverged
-   * (`inversion`).
+   * (`inversion`). Such bodies store all bonds.
    */
   template <int dim>
   class Correspondence : public FamilyForces<dim>
@@ -54,9 +63,9 @@ namespace PeriDeal
     static constexpr unsigned int n_history = 2 * dim; // of a bond of a body that flows
 
     /**
-     * All have to outlive this object; rows are neither packed nor left out, q is final. Throws
-     * UserError: a yield stress that is not positive, what a law of the user throws; all that is
-     * collective throws that (StressSteps). Collective.
+     * All have to outlive this object; rows are not packed, q is final. Throws UserError: a yield
+     * stress that is not positive, what a law of the user throws; all that is collective throws
+     * that (StressSteps). Collective.
      */
     Correspondence(const Families<dim>       &families,
                    const BondEnds<dim>       &ends,
@@ -64,10 +73,11 @@ namespace PeriDeal
                    const NodeLaws<dim>       &laws,
                    const ThermalStrains      &thermal,
                    const BodyParameters<dim> &body);
+    ~Correspondence() override;
 
     bool is_linear() const override
     {
-      return law.is_linear;
+      return stresses.is_linear();
     }
 
     void   multiply(Vector &y, const Vector &x) const override;
@@ -78,7 +88,7 @@ namespace PeriDeal
     void   linearize(const Vector &u) override;
     void   forget_tangent() override
     {
-      tangent.any = tangent.any && law.is_full; // a deformed body may be stiffer
+      tangent.any = false;
     }
 
     /** Of these owned nodes alone. Collective. */
@@ -93,64 +103,16 @@ namespace PeriDeal
      */
     NodalTensors<dim> tensors(const Vector &u) const;
 
-    /** mu of an owned node. */
-    double shear(const unsigned int i) const
-    {
-      return shapes[i].shear;
-    }
-
-    /** In two dimensions, the stress of an owned node out of the plane, at the last tensors(). */
-    double out_of_plane(const unsigned int i) const;
-
-    /** What StressLaw::shown() names, of the owned nodes at the last accepted step. */
-    std::vector<std::pair<std::string, std::vector<double>>> shown() const;
-
     /** Bonds of these owned nodes bear nothing any more, or q has changed. Not collective. */
     void renew(const std::vector<unsigned int> &nodes);
 
-    /** The diagonal of the elastic K without conditions. Collective. */
-    void find_diagonal(Vector &diagonal) const;
-
-    /**
-     * By node, no less than the sums of the rows of the elastic K, as one of numbers: what G does
-     * is no stiffer than bonds that are kappa W stiff in all directions, kappa = max(c, lambda V
-     * |M^-1|) with the largest eigenvalue lambda of the stiffness, with full kinematics |F|^2 times
-     * that and |S| of the last linearize(). Collective.
-     */
-    Vector row_sums() const;
-
     std::size_t memory_consumption() const override;
 
+    NodeShapes<dim>   shapes;
+    NodeStresses<dim> stresses; // what has been said last is of the last tensors(), or forces
+
   private:
-    using Full = dealii::SymmetricTensor<2, dim>;
-
-    /** What of a node its bonds and moduli tell. */
-    struct Shape
-    {
-      Full                            inverse; // M^-1
-      dealii::SymmetricTensor<4, dim> elastic;
-      double                          shear = 0., stabilizer = 0.; // mu, c
-    };
-
-    /** Numbers of each bond, in the order of rows. */
-    template <typename Number>
-    struct OfBonds
-    {
-      const std::vector<Number> &of(const bool is_beyond) const
-      {
-        return is_beyond ? beyond : body;
-      }
-
-      void resize(const BondTable<dim> &bonds)
-      {
-        body.resize(bonds.body.size());
-        beyond.resize(bonds.beyond.size());
-      }
-
-      std::vector<Number> body, beyond;
-    };
-
-    using Changes = OfBonds<dealii::Tensor<1, dim>>;
+    using Changes = OfBonds<dim, dealii::Tensor<1, dim>>;
 
     /** What the other ends of bonds have to know of a node: places of numbers. */
     enum Place : unsigned int
@@ -166,61 +128,55 @@ namespace PeriDeal
     void find(const Vector &u) const;
     void find_changes(const Vector &x) const; // in the tangent; ghosts are up to date
     bool knows(const Vector &u) const;
-    void remember();
+    void remember(const Vector &u);
+    void keep_elastic(const Vector &u);
 
-    /** What an owned node makes of displacements, whose ghosts and images are up to date. */
+    /** What is stored at u, whose forces, if there is a lattice, are -F; of this process. */
+    double stored(const Vector &u, const Vector &minus_F) const;
+
+    /** What a node makes of displacements, whose ghosts and images are up to date. */
     void find_at(const double      *u,
                  const unsigned int i,
                  const Span        &inside,
                  const Span        &outside) const;
 
-    /** What the law says at an owned node. */
-    void ask(const unsigned int               i,
-             const double                     beside,
-             dealii::SymmetricTensor<4, dim> *of_tangent,
-             typename J2Plasticity::Beside   &flow) const;
+    /** The same of those that store no bonds. */
+    void find_on_lattice(const double *u) const;
 
-    const Families<dim>  &families;
-    const BondEnds<dim>  &ends;
-    BondTable<dim>       &bonds;
-    const NodeLaws<dim>  &laws;
-    const ThermalStrains &thermal;
+    /** What a node makes of its gradient and of sums of W |z_e|^2 and of W z_e . du. */
+    void settle(const unsigned int i, const double squares, const double products) const;
 
+    /** What it makes of the change of its gradient, in the tangent, and of a sum of W z_e . du. */
+    void settle_change(const unsigned int            i,
+                       const dealii::Tensor<2, dim> &slopes,
+                       const double                  products) const;
+
+    const Families<dim> &families;
+    const BondEnds<dim> &ends;
+    BondTable<dim>      &bonds;
     struct
     {
-      std::unique_ptr<const StressLaw> law;
-      const J2Plasticity              *j2        = nullptr; // if it is that
-      bool                             is_linear = false, is_full = false;
-      std::vector<double>              parameters, states;
-    } law;
-
-    std::vector<Shape> shapes;  // of owned nodes
-    OfBonds<double>    weights; // W
+      std::unique_ptr<GradientLattice<dim>>  sums; // or none
+      std::unique_ptr<LatticeHistories<dim>> histories;
+    } lattice;
 
     struct
     {
       bool                                known = false, has_forces = false;
       Vector                              displacement, forces, numbers;
-      std::vector<StressLaw::Response>    responses;
       std::vector<dealii::Tensor<2, dim>> slopes;
-      std::vector<double>                 squares, ratios, states; // sum of W |z_e|^2; next
-      Changes                             changes;                 // du, where the law flows
-      Trip                                inverted;                // the worst one
+      std::vector<double> squares, products, ratios; // sums of W |z_e|^2, W z_e . du; r
+      std::vector<std::pair<unsigned int, dealii::Tensor<1, dim>>> pulls; // sums of W z_p
     } mutable trial;
 
-    StepWork    accepted;
-    StressSteps steps;
+    StepWork accepted;
 
     /** Of a node that flows. */
     struct Flow
     {
       dealii::SymmetricTensor<4, dim> stiffness;
-      Full                            stress_slope;
+      dealii::SymmetricTensor<2, dim> stress_slope;
       double                          ratio = 1., ratio_slope = 0.;
-
-      // With full kinematics.
-      dealii::Tensor<2, dim> deformation; // F
-      Full                   stress;      // S
     };
 
     struct
@@ -229,6 +185,9 @@ namespace PeriDeal
       mutable Vector    changes;
       std::vector<Flow> flows;
       Changes           own, far; // z_e of both ends
+      // On the lattice: sums of W z_e . du; of W z_e, where it flows.
+      mutable std::vector<double>                                  products;
+      std::vector<std::pair<unsigned int, dealii::Tensor<1, dim>>> pulls;
     } tangent;
   };
 } // namespace PeriDeal
