@@ -63,7 +63,9 @@ namespace PeriDeal
 
 
   template <int dim>
-  void DeformedStrains<dim>::reinit(const FEValues<dim> &of_cell, const dealii::Vector<double> &u)
+  void DeformedStrains<dim>::reinit(const FEValues<dim>          &of_cell,
+                                    const dealii::Vector<double> &u,
+                                    const bool                    with_slopes)
   {
     values = &of_cell;
     for (unsigned int q = 0; q < points.size(); ++q)
@@ -74,8 +76,9 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             at.gradient[d] += u(dim * a + d) * of_cell.shape_grad(a, q);
         at.change = at.mean = change_of_volume<dim>(at.gradient);
-        if (at.change > -1.)
-          at.inverse = invert(deformation_of(points[q].gradient));
+        if (projects && at.change > -1.)
+          at.inverse = invert(deformation_of(at.gradient));
+        at.strain = in_space(strain_of(at.gradient));
       }
     if (!projects)
       return;
@@ -86,10 +89,14 @@ namespace PeriDeal
       {
         Deformed &at = points[q];
         at.mean      = projected[q];
-        if (volume_ratio(q) > 0.)
-          at.log_size = 2. / 3. * (std::log1p(at.mean) - std::log1p(at.change));
+        if (!(volume_ratio(q) > 0.))
+          continue;
+        at.log_size = 2. / 3. * (std::log1p(at.mean) - std::log1p(at.change));
+        at.strain   = std::exp(at.log_size) * at.strain +
+                    0.5 * std::expm1(at.log_size) * unit_symmetric_tensor<3>();
       }
-    find_slopes();
+    if (with_slopes)
+      find_slopes();
   }
 
 
@@ -118,20 +125,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  SymmetricTensor<2, 3> DeformedStrains<dim>::strain(const unsigned int q) const
-  {
-    const Deformed               &at          = points[q];
-    const SymmetricTensor<2, dim> of_gradient = strain_of(at.gradient);
-    const double                  size        = std::exp(at.log_size);
-    Strain                        full;
-    for (unsigned int c = 0; c < dim; ++c)
-      for (unsigned int d = c; d < dim; ++d)
-        full[c][d] = size * of_gradient[c][d];
-    return full + 0.5 * std::expm1(at.log_size) * unit_symmetric_tensor<3>();
-  }
-
-
-  template <int dim>
   SymmetricTensor<2, 3> DeformedStrains<dim>::of_unknown(const unsigned int a,
                                                          const unsigned int d,
                                                          const unsigned int q) const
@@ -150,17 +143,29 @@ namespace PeriDeal
   }
 
 
+  // What a pressure is projected with is its own transpose, so that it may take the pressures.
   template <int dim>
-  Tensor<1, dim> DeformedStrains<dim>::force(const unsigned int a,
-                                             const unsigned int q,
-                                             const Strain      &stress) const
+  void DeformedStrains<dim>::find_nominal(std::vector<Tensor<2, dim>> &nominal,
+                                          const std::vector<Strain>   &stresses) const
   {
-    Vector force =
-      std::exp(points[q].log_size) *
-      (deformation_of(points[q].gradient) * stress_along<dim>(stress, values->shape_grad(a, q)));
+    std::vector<double> projected;
     if (projects)
-      force += mean_of(stress, strain(q)) * (means[place(a, q)] - slopes[place(a, q)]);
-    return force;
+      projection.find(projected, [&](const unsigned int q) {
+        return mean_of(stresses[q], strain(q)) / (1. + points[q].mean);
+      });
+    nominal.resize(points.size());
+    for (unsigned int q = 0; q < points.size(); ++q)
+      {
+        const Deformed         &at = points[q];
+        SymmetricTensor<2, dim> stress;
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = c; d < dim; ++d)
+            stress[c][d] = stresses[q][c][d];
+        nominal[q] = std::exp(at.log_size) * (deformation_of(at.gradient) * Tensor<2, dim>(stress));
+        if (projects)
+          nominal[q] += ((1. + at.change) * projected[q] - mean_of(stresses[q], strain(q))) *
+                        transpose(at.inverse);
+      }
   }
 
 

@@ -102,7 +102,7 @@ namespace PeriDeal
     for (unsigned int i = 0; u != nullptr && i < at.u.size(); ++i)
       at.u(i) = (*u)(dim * at.nodes[i / dim] + i % dim);
     if (at.deformed)
-      at.deformed->reinit(at.strains.values(), at.u);
+      at.deformed->reinit(at.strains.values(), at.u, with_tangents);
     StressLaw::Trial trial;
     trial.length           = std::pow(cell->measure(), 1. / dim) / dofs.get_fe().degree;
     trial.element          = cell->global_active_cell_index();
@@ -203,6 +203,25 @@ namespace PeriDeal
 
 
   template <int dim>
+  void StressCells<dim>::add_forces(std::vector<Tensor<1, dim>> &forces) const
+  {
+    std::vector<StressLaw::Tensor> stresses;
+    std::vector<Tensor<2, dim>>    nominal;
+    if (at.deformed)
+      {
+        for (const LawPoint &point : at.points)
+          stresses.push_back(point.response.stress);
+        at.deformed->find_nominal(nominal, stresses);
+      }
+    for (unsigned int q = 0; q < at.points.size(); ++q)
+      for (unsigned int a = 0; a < forces.size(); ++a)
+        forces[a] += at.points[q].weight * (at.deformed ?
+                                              nominal[q] * at.strains.values().shape_grad(a, q) :
+                                              at.strains.force(a, q, at.points[q].response.stress));
+  }
+
+
+  template <int dim>
   void StressCells<dim>::find_forces(Vector                  &y,
                                      const HangingNodes<dim> &hanging,
                                      const Vector            &u,
@@ -212,11 +231,9 @@ namespace PeriDeal
     inverted  = Trip();
     y         = 0.;
     std::vector<Tensor<1, dim>> forces(at.nodes.size());
-    for_each(u, [&](const Cell &, const std::vector<LawPoint> &points) {
+    for_each(u, [&](const Cell &, const std::vector<LawPoint> &) {
       std::fill(forces.begin(), forces.end(), Tensor<1, dim>());
-      for (unsigned int q = 0; q < points.size(); ++q)
-        for (unsigned int a = 0; a < forces.size(); ++a)
-          forces[a] += points[q].weight * at.force(a, q, points[q].response.stress);
+      add_forces(forces);
       for (unsigned int a = 0; a < forces.size(); ++a)
         for (unsigned int d = 0; d < dim; ++d)
           y(dim * at.nodes[a] + d) += forces[a][d];

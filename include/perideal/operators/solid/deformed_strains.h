@@ -37,21 +37,33 @@ namespace PeriDeal
                     const unsigned int                n_points,
                     const bool                        projects);
 
-    /** @param values to outlive what is asked @param u of the cell, dim components of each node */
-    void reinit(const dealii::FEValues<dim> &values, const dealii::Vector<double> &u);
+    /**
+     * @param values       to outlive what is asked
+     * @param u            of the cell, dim components of each node
+     * @param with_slopes  of_unknown() and add_geometric() follow
+     */
+    void reinit(const dealii::FEValues<dim>  &values,
+                const dealii::Vector<double> &u,
+                const bool                    with_slopes);
 
     /** The smaller one of J and J_bar. Where it is not positive all that follows means nothing. */
     double volume_ratio(const unsigned int q) const;
 
-    Strain strain(const unsigned int q) const;
+    const Strain &strain(const unsigned int q) const
+    {
+      return points[q].strain;
+    }
 
     /** The derivative of the strain by the displacement in direction @p d of a node @p a. */
     Strain of_unknown(const unsigned int a, const unsigned int d, const unsigned int q) const;
 
-    /** As ProjectedStrains::force(), of the second stress of Piola and Kirchhoff. */
-    dealii::Tensor<1, dim> force(const unsigned int a,
-                                 const unsigned int q,
-                                 const Strain      &stress) const;
+    /**
+     * Of second stresses of Piola and Kirchhoff at all points the first ones: over the weight of a
+     * point the force on a node is that times the gradient of its shape function. (They are those
+     * of the projected volume: F S only where nothing is projected.)
+     */
+    void find_nominal(std::vector<dealii::Tensor<2, dim>> &nominal,
+                      const std::vector<Strain>           &stresses) const;
 
     /**
      * Add the second derivatives of strains times stresses.
@@ -76,6 +88,7 @@ namespace PeriDeal
       double change   = 0.;     // J - 1
       double mean     = 0.;     // J_bar - 1
       double log_size = 0.;     // of (J_bar/J)^(2/3)
+      Strain strain;
     };
 
     std::size_t place(const unsigned int a, const unsigned int q) const

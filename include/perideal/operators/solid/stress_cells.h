@@ -147,6 +147,9 @@ namespace PeriDeal
                  const double *accepted,
                  const bool    with_tangents) const;
 
+    /** Forces on the nodes of the cell that is looked at. */
+    void add_forces(std::vector<dealii::Tensor<1, dim>> &forces) const;
+
     /** Large deformations: whether the point that is looked at is as one may be; else keeps it. */
     bool holds(const unsigned int q) const;
 
@@ -163,13 +166,6 @@ namespace PeriDeal
     /** The cell that is looked at. */
     struct Looked
     {
-      dealii::Tensor<1, dim> force(const unsigned int       a,
-                                   const unsigned int       q,
-                                   const StressLaw::Tensor &stress) const
-      {
-        return deformed ? deformed->force(a, q, stress) : strains.force(a, q, stress);
-      }
-
       ProjectedStrains<dim>                        strains;  // of large deformations the points
       std::unique_ptr<DeformedStrains<dim>>        deformed; // null: they are small
       std::vector<dealii::types::global_dof_index> nodes;
