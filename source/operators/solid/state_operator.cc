@@ -615,7 +615,10 @@ namespace PeriDeal
   void StateOperator<dim>::follow_bonds(const std::vector<unsigned int> *of_nodes)
   {
     if (!of_nodes)
-      solid.renew_gradients(solid.rows.body.nodes);
+      {
+        solid.renew_gradients(solid.rows.body.nodes);
+        solid.renew_gradients(solid.rows.beyond.nodes);
+      }
     if (of_nodes && !solid.ends.images && !solid.correspondence())
       mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
     else if (!of_nodes || !this->explicit_steps.follow)
