@@ -201,6 +201,8 @@ namespace PeriDeal
   template <int dim>
   void Correspondence<dim>::renew(const std::vector<unsigned int> &nodes)
   {
+    if (nodes.empty() && shapes.weights().body.size() == bonds.body.size())
+      return;
     trial.known = false;
     shapes.renew(nodes);
   }
@@ -359,7 +361,7 @@ namespace PeriDeal
         lattice.histories->subtract_far(
           y.begin(),
           LatticeHistories<dim>::Of::plastic,
-          [=](const std::size_t node) { return numbers[n * node + at_stiffness]; });
+          [=](const unsigned int node) { return numbers[n * node + at_stiffness]; });
       }
     sum_forces_of_families(
       y,
@@ -757,7 +759,7 @@ namespace PeriDeal
         lattice.histories->subtract_far(
           y.begin(),
           LatticeHistories<dim>::Of::elastic,
-          [=](const std::size_t node) { return -numbers[n * node + at_slopes]; });
+          [=](const unsigned int node) { return -numbers[n * node + at_slopes]; });
       }
     sum_forces_of_families(y,
                            bonds,

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 
 #include "../lattice/lattice_layout.h"
 #include "bond_chunks.h"
@@ -68,8 +69,9 @@ namespace PeriDeal
      * Subtract from y, at the nodes of the layout's runs, what their far ends remember along their
      * own bonds: V_i sum of w V_j factor(j) times that.
      */
-    template <typename Factor>
-    void subtract_far(double *y, const Of what, const Factor &factor);
+    void subtract_far(double                                          *y,
+                      const Of                                         what,
+                      const std::function<double(const unsigned int)> &factor);
 
     /** Of nodes that have something to remember. Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
@@ -270,41 +272,5 @@ namespace PeriDeal
         visit(node, products[k]);
       });
     });
-  }
-
-
-  template <int dim>
-  template <typename Factor>
-  void LatticeHistories<dim>::subtract_far(double *y, const Of what, const Factor &factor)
-  {
-    bool any = false;
-    for (Chunk &chunk : chunks)
-      if (what == Of::plastic ? chunk.remembers : chunk.is_kept)
-        {
-          any = true;
-          flow(chunk);
-          for (unsigned int k = 0; k < width; ++k)
-            {
-              const unsigned int node = node_at(chunk, k);
-              chunk.factors[k] = node == none ? 0. : families.nodes().volume(node) * factor(node);
-            }
-        }
-    if (!any)
-      return;
-    std::vector<double>     sums(dim * (row.length + 2 * width));
-    std::array<double *, 3> to{};
-    for (unsigned int a = 0; a < dim; ++a)
-      to[a] = sums.data() + a * (row.length + 2 * width) + width;
-    for (std::size_t r = 0; r < layout.runs.size(); ++r)
-      {
-        std::fill(sums.begin(), sums.end(), 0.);
-        add_far_of(layout.runs[r], what, to.data());
-        for (std::size_t k = 0; k < layout.runs[r].n; ++k)
-          {
-            const std::size_t node = layout.first_nodes[r] + k;
-            for (unsigned int a = 0; a < dim; ++a)
-              y[dim * node + a] -= families.nodes().volume(node) * to[a][k];
-          }
-      }
   }
 } // namespace PeriDeal
