@@ -307,7 +307,7 @@ Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | small displac
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 => 'Model' | 'Law = viscoelastic' | 'state-based'
 Material/Law=formula & Material/Bond force=s & Elasticity/Solver=newton => 'Model' | 'Law = formula' | 'state-based'
 Peridynamics/Surface correction=moments => 'Surface correction' | 'moments' | 'correspondence' | 'none'
-Peridynamics/Operator form=lattice => 'Operator form' | 'Model = correspondence' | 'auto'
+Material/Law=hyperelastic & Elasticity/Kinematics=full & Elasticity/Solver=newton & Peridynamics/Operator form=lattice => 'Operator form' | 'Kinematics = full' | 'auto'
 Material/Law=plastic & Material/Yield stress=1 & Elasticity/Solver=newton & Material/Fracture energy=1 => 'Law' | do not break
 )");
   }

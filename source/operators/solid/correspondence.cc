@@ -195,6 +195,8 @@ namespace PeriDeal
   template <int dim>
   void Correspondence<dim>::renew(const std::vector<unsigned int> &nodes)
   {
+    if (nodes.empty() && shapes.weights().body.size() == bonds.body.size())
+      return;
     trial.known = false;
     shapes.renew(nodes);
   }
@@ -354,7 +356,7 @@ namespace PeriDeal
         lattice.histories->subtract_far(
           y.begin(),
           LatticeHistories<dim>::Of::plastic,
-          [=](const std::size_t node) { return numbers[n * node + at_stiffness]; });
+          [=](const unsigned int node) { return numbers[n * node + at_stiffness]; });
       }
     sum_forces_of_families(
       y,
@@ -772,7 +774,7 @@ namespace PeriDeal
         lattice.histories->subtract_far(
           y.begin(),
           LatticeHistories<dim>::Of::elastic,
-          [=](const std::size_t node) { return -numbers[n * node + at_slopes]; });
+          [=](const unsigned int node) { return -numbers[n * node + at_slopes]; });
       }
     sum_forces_of_families(y,
                            bonds,

@@ -185,6 +185,43 @@ namespace PeriDeal
 
 
   template <int dim>
+  void LatticeHistories<dim>::subtract_far(double                                          *y,
+                                           const Of                                         what,
+                                           const std::function<double(const unsigned int)> &factor)
+  {
+    bool any = false;
+    for (Chunk &chunk : chunks)
+      if (what == Of::plastic ? chunk.remembers : chunk.is_kept)
+        {
+          any = true;
+          flow(chunk);
+          for (unsigned int k = 0; k < width; ++k)
+            {
+              const unsigned int node = node_at(chunk, k);
+              chunk.factors[k] = node == none ? 0. : families.nodes().volume(node) * factor(node);
+            }
+        }
+    if (!any)
+      return;
+    std::vector<double>     sums(dim * (row.length + 2 * width));
+    std::array<double *, 3> to{};
+    for (unsigned int a = 0; a < dim; ++a)
+      to[a] = sums.data() + a * (row.length + 2 * width) + width;
+    for (std::size_t r = 0; r < layout.runs.size(); ++r)
+      {
+        std::fill(sums.begin(), sums.end(), 0.);
+        add_far_of(layout.runs[r], what, to.data());
+        for (std::size_t k = 0; k < layout.runs[r].n; ++k)
+          {
+            const std::size_t node = layout.first_nodes[r] + k;
+            for (unsigned int a = 0; a < dim; ++a)
+              y[dim * node + a] -= families.nodes().volume(node) * to[a][k];
+          }
+      }
+  }
+
+
+  template <int dim>
   void LatticeHistories<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
     const std::size_t n = family.weights.size();
@@ -235,27 +272,6 @@ namespace PeriDeal
             pairs.values[dim * k + a];
       }
     exchange_ghosts();
-  }
-
-
-  template <int dim>
-  void LatticeHistories<dim>::subtract_far_sums(double *y, const Of what) const
-  {
-    std::vector<double>     sums(dim * (row.length + 2 * width));
-    std::array<double *, 3> to{};
-    for (unsigned int a = 0; a < dim; ++a)
-      to[a] = sums.data() + a * (row.length + 2 * width) + width;
-    for (std::size_t r = 0; r < layout.runs.size(); ++r)
-      {
-        std::fill(sums.begin(), sums.end(), 0.);
-        add_far_of(layout.runs[r], what, to.data());
-        for (std::size_t k = 0; k < layout.runs[r].n; ++k)
-          {
-            const std::size_t node = layout.first_nodes[r] + k;
-            for (unsigned int a = 0; a < dim; ++a)
-              y[dim * node + a] -= families.nodes().volume(node) * to[a][k];
-          }
-      }
   }
 
 

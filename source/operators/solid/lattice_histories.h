@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 
 #include "../lattice/lattice_layout.h"
 #include "bond_chunks.h"
@@ -68,8 +69,9 @@ namespace PeriDeal
      * Subtract from y, at the nodes of the layout's runs, what their far ends remember along their
      * own bonds: V_i sum of w V_j factor(j) times that.
      */
-    template <typename Factor>
-    void subtract_far(double *y, const Of what, const Factor &factor);
+    void subtract_far(double                                          *y,
+                      const Of                                         what,
+                      const std::function<double(const unsigned int)> &factor);
 
     /** Of nodes that have something to remember. Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
@@ -124,7 +126,6 @@ namespace PeriDeal
     void for_each_owned(const Chunk &chunk, const Visit &visit) const;
 
     void make_grids(Grids &of);
-    void subtract_far_sums(double *y, const Of what) const; // the factors are known
     void add_far_of(const StencilKernel::Run &run, const Of what, double *const *to) const;
     void exchange_ghosts();
 
@@ -271,26 +272,5 @@ namespace PeriDeal
         visit(node, products[k]);
       });
     });
-  }
-
-
-  template <int dim>
-  template <typename Factor>
-  void LatticeHistories<dim>::subtract_far(double *y, const Of what, const Factor &factor)
-  {
-    bool any = false;
-    for (Chunk &chunk : chunks)
-      if (what == Of::plastic ? chunk.remembers : chunk.is_kept)
-        {
-          any = true;
-          flow(chunk);
-          for (unsigned int k = 0; k < width; ++k)
-            {
-              const unsigned int node = node_at(chunk, k);
-              chunk.factors[k] = node == none ? 0. : families.nodes().volume(node) * factor(node);
-            }
-        }
-    if (any)
-      subtract_far_sums(y, what);
   }
 } // namespace PeriDeal

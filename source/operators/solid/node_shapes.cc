@@ -95,8 +95,14 @@ namespace PeriDeal
   {
     // Of bonds that have broken too few may be left for a gradient, and those that are would make
     // the node so stiff that steps are no longer stable. At a face of a crack half of M is left.
-    constexpr double few = 0.35;
+    constexpr double  few   = 0.35;
+    const std::size_t known = of_bonds.body.size();
     of_bonds.resize(bonds);
+    for (std::size_t k = known; k < bonds.body.size(); ++k) // of nodes that have got a row
+      {
+        const Tensor<1, dim> xi = ends.vector(bonds.body.node_of(k), bonds.body.neighbors[k]);
+        of_bonds.body[k]        = (bonds.body.moments[k] * xi) / xi.norm_square();
+      }
     for (const unsigned int i : nodes)
       {
         Full M;

@@ -589,7 +589,10 @@ namespace PeriDeal
                                               solid.forces.energy_of(breakage.nodes_at_work(), u);
     });
     if (!change)
-      return 0;
+      {
+        solid.renew_gradients({}); // nodes may store their bonds now all the same
+        return 0;
+      }
     // Laws that know damage take energy from bonds that are whole, too.
     const bool   weakens = solid.law.any() && solid.law->knows_damage();
     const auto  &all     = solid.rows.body.nodes;
