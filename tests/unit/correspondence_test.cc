@@ -206,7 +206,7 @@ namespace
   {
     SCOPED_TRACE(kind.name);
     Body<dim>    body(box<dim>() + nodal + plastic + kind.more, ModelKind::peridynamics);
-    const double size = dim == 3 ? 0.45 : 1.;
+    const double size = dim == 3 ? 0.3 : 1.;
     body.op().accept(waves(body, 0.02 * size, 0.), 0.);
     body.op().accept(waves(body, 0.025 * size, 0.2), 1.);
     double                    yielded = 0.;
