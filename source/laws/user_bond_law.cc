@@ -35,8 +35,8 @@ namespace PeriDeal
     std::ostringstream         text;
     text << "answers a bond at rest, whose states are 0, with the force " << answer.force
          << ". It has to be 0";
-    if (first_fault.empty() && answer.force != 0.)
-      first_fault = text.str();
+    if (first_fault.text.empty() && answer.force != 0.)
+      first_fault.text = text.str();
   }
 
 
@@ -47,6 +47,8 @@ namespace PeriDeal
         }))
       return "writes more states than 'User states' in section 'Material', which is " +
              std::to_string(n_states) + ". Give as many as it has";
+    if (status == PERIDEAL_BOND_LAW_SHORTER_STEP)
+      return "asks for a shorter step. Give a smaller 'Time step' in section 'Time'";
     if (status != 0)
       return "returns " + std::to_string(status) + " in place of 0";
     for (const auto &[value, name] : {std::make_pair(answer.force, "force"),
@@ -66,7 +68,7 @@ namespace PeriDeal
   perideal_bond_answer UserBondLaw::ask(const BondValues &values, const double *history) const
   {
     perideal_bond_answer answer{};
-    if (!first_fault.empty())
+    if (!first_fault.text.empty())
       return answer;
     const perideal_bond bond{values.stretch(),
                              values.length,
@@ -99,7 +101,7 @@ namespace PeriDeal
     text << found << ". It was asked with the stretch " << bond.stretch << ", the length "
          << bond.length << ", the damage " << bond.damage << " and the time step "
          << bond.time_step;
-    first_fault = text.str();
+    first_fault = {text.str(), thrown.empty() && status == PERIDEAL_BOND_LAW_SHORTER_STEP};
     return {};
   }
 
@@ -129,7 +131,7 @@ namespace PeriDeal
   void UserBondLaw::accept(const BondValues &bond, double *history) const
   {
     ask(bond, history);
-    if (first_fault.empty())
+    if (first_fault.text.empty())
       std::copy_n(next.begin(), n_states, history);
   }
 } // namespace PeriDeal

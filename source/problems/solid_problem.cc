@@ -480,7 +480,7 @@ namespace PeriDeal
     options.multigrid      = scene.elasticity.multigrid();
     // Where stretches are known; what softens waits for no motion.
     options.breaks_in_motion = scene.elasticity.breaks_in_motion() && !scene.material.law.softens();
-    options.remembers        = scene.material.law.kind == SolidLaw::user;
+    options.remembers        = !scene.material.law.user.library.empty();
     options.divides_steps    = // temperatures are those of their ends
       !scene.warms_slowly() && !scene.material.law.softens();
     auto solver = make_static_solver(scene.elasticity.solver_name(), op(), options);

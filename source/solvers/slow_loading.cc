@@ -219,7 +219,8 @@ namespace PeriDeal
       }
     catch (const UserError &failure)
       {
-        if (n_broken == 0)
+        const auto *const diverged = dynamic_cast<const Diverged *>(&failure);
+        if (n_broken == 0 || (diverged && diverged->trip.monitor == "law")) // which says it all
           throw;
         op.mechanical_loads(memory.scratch, t);
         const bool         loaded = memory.scratch.linfty_norm() > 0.;
@@ -231,9 +232,8 @@ namespace PeriDeal
                 "Nothing may bear the loads any more: pull by 'Displacement' in section 'Boundary conditions' in place of 'Traction', or use 'Solver = dynamics' in section 'Elasticity'. " :
                 "Try a smaller 'Time step' in section 'Time', or another 'Solver' or 'Preconditioner' in section 'Elasticity'. ")
           << "What the solver said: " << failure.message();
-        u                          = before.state;
-        const auto *const diverged = dynamic_cast<const Diverged *>(&failure);
-        constexpr double  none     = std::numeric_limits<double>::quiet_NaN();
+        u                     = before.state;
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
         throw Diverged(message.str(),
                        "solver",
                        diverged ? diverged->trip.value : none,
@@ -352,8 +352,9 @@ namespace PeriDeal
                          const AfterStep &after_round,
                          const AfterStep &before_breaks)
   {
-    const double size_before = reached.size, goal_before = breaking.goal;
-    breaking.division.whole = t - reached.time;
+    const double   size_before = reached.size, goal_before = breaking.goal;
+    const unsigned divisions_before = counts.divisions;
+    breaking.division.whole         = t - reached.time;
     for (bool is_there = false; !is_there;)
       try
         {
@@ -363,9 +364,10 @@ namespace PeriDeal
         }
       catch (const StepLeft &)
         {
-          u             = before.state;
-          reached.size  = size_before;
-          breaking.goal = goal_before;
+          u                = before.state;
+          reached.size     = size_before;
+          breaking.goal    = goal_before;
+          counts.divisions = divisions_before;
           after_round(reached.time); // keeps the state, and stops
         }
     go_on(u, after_round, before_breaks);
@@ -374,10 +376,12 @@ namespace PeriDeal
 
   double SlowLoading::find_next_equilibrium(Vector &u, const bool may_be_left)
   {
-    // Loads of temperatures are those of the goal; what faces of cracks have done stays.
-    const bool   may_divide = options.divides_steps && op.nonlinear() && !op.may_touch();
+    // Loads of temperatures are those of the goal; what faces of cracks have done stays. What has
+    // broken may bear nothing any more.
+    const bool may_divide = options.divides_steps && op.nonlinear() && !op.may_touch() &&
+                            op.n_broken_bonds() == 0;
     const double before_it  = reached.size;
-    bool         is_divided = breaking.division.last > 0.;
+    bool         is_divided = breaking.division.last > 0., has_failed = false;
     // Twice as far as the last part, but no sliver is left.
     double t = is_divided && reached.time + 2.5 * breaking.division.last < breaking.goal ?
                  reached.time + 2. * breaking.division.last :
@@ -385,6 +389,12 @@ namespace PeriDeal
     for (;;)
       try
         {
+          if (has_failed)
+            {
+              op.residual(memory.scratch, u, t); // laws know the time, too
+              op.linearize(u);
+              solver->operator_changed();
+            }
           find_equilibrium(u, t, may_be_left);
           is_divided = is_divided && t - reached.time < (1. - 1e-9) * breaking.division.whole;
           breaking.division.last = is_divided ? t - reached.time : 0.;
@@ -397,12 +407,10 @@ namespace PeriDeal
           if (!may_divide ||
               half * breaking.division.most_parts < (1. - 1e-9) * breaking.division.whole)
             throw;
-          is_divided   = true;
-          t            = reached.time + half;
-          reached.size = before_it;
+          is_divided = has_failed = true;
+          t                       = reached.time + half;
+          reached.size            = before_it;
           ++counts.divisions;
-          op.linearize(u);
-          solver->operator_changed();
         }
   }
 

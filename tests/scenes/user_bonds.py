@@ -42,6 +42,15 @@ def bar():
     for n in (2, 4):
         several = run_scene(BAR, ranks=n)
         table.add(f"{n} processes", several.total("force on right in x", PD, 4), 0.9, relative=1e-9)
+    # Laws that ask for short steps get them, and are not asked for a jump to no stretch.
+    folder = temporary_folder()
+    wary = law("  if (fabs(s - b->states[0]) > 0.0004) return PERIDEAL_BOND_LAW_SHORTER_STEP;\n  next[0] = s;")
+    run = run_scene(BAR, {**user(write_file("wary.c", wary, folder), 1), "Time/Time step": "0.25"})
+    table.add("shorter steps", run.total("force on right in x", PD, 1), 4, relative=1e-9)
+    check("load steps were halved" in run.stdout, f"told: {run.stdout[-500:]}")
+    jumpy = law("  if (fabs(s - b->states[0]) > 0.0015) return 3;\n  next[0] = s;")
+    run = run_scene(BAR, {**user(write_file("jumpy.c", jumpy, folder), 1)})
+    table.add("no jumps", run.total("force on right in x", PD, 1), 4, relative=1e-9)
     # A plate is pulled beyond yield and let go: what one process finds two find.
     plate = {"Dimension": "2", "Domain/Lower corner": "0, 0", "Domain/Upper corner": "1, 0.5", "Domain/Cells": "20, 10", "Material/Poisson ratio": "0.25", "Elasticity/Plane": "strain",
              "Boundary conditions/Displacement": "left: 0, 0 ; right: 0.004*min(t, 2 - t), 0", "Time/End time": "1.75", "Output/Line": "", "Output/Probes": "0.9, 0.1", "Solver/Tolerance": "1e-12"}
@@ -80,6 +89,7 @@ BROKEN = {
     "status": ("if (s > 1e-4) return 7;", 0, ["returns 7 in place of 0"]),
     "states": ("next[2] = 1;", 2, ["writes more states than 'User states'", "which is 2"]),
     "no state": ("if (s != 0) next[0] = log(-1.);", 1, ["a state that is no number"]),
+    "short steps": ("if (s != 0) return PERIDEAL_BOND_LAW_SHORTER_STEP;", 0, ["asks for a shorter step"]),
     "at rest": ("a->force = s + 1e-3;", 0, ["the force 0.001", "It has to be 0"]),
 }
 

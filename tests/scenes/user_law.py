@@ -308,6 +308,11 @@ def plastic():
     run = run_scene(BAR, {"Domain/Cells": "4, 2, 2", **user(impatient), "Time/Time step": "2", "Time/End time": "4"})
     table.add("shorter steps", run.total("force on right in x", FE, 4), 4, relative=1e-8)
     check("load steps were halved" in run.stdout, f"told: {run.stdout[-500:]}")
+    by_time = write_file("by_time.c", HEAD + "  if (*dtime > 0.6) *pnewdt = 0.5;\n}\n")
+    for n in (1, 2):
+        run = run_scene(BAR, {"Domain/Cells": "4, 2, 2", **user(by_time), "Time/Time step": "2", "Time/End time": "4"}, ranks=n)
+        table.add(f"steps that are short in time, {n} process(es)", run.total("force on right in x", FE, 4), 4, relative=1e-8)
+        check_less(abs(run.total("energy imbalance", FE, 4)), 1e-8 * run.total("strain energy", FE, 4), "balance of energy")
     run = run_scene(BAR, {"Domain/Cells": "4, 2, 2", "Material/User properties": "1000, 0.3, 1, 100, 0"})
     table.add("bar, isotropic, t = 7", run.total("force on right in x", FE, 7), 1 + 0.004 * slope - 2, relative=1e-8)
     table.add("bar, isotropic, t = 8", run.total("force on right in x", FE, 8), -(1 + 0.004 * slope) - (0.003 - 2 * (1 + 0.004 * slope) / 1000) * slope, relative=1e-8)

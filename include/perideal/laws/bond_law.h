@@ -23,6 +23,14 @@ namespace PeriDeal
   };
 
 
+  /** What is wrong with a law, empty: nothing, and whether a shorter step may do. */
+  struct LawFault
+  {
+    std::string text;
+    bool        asks_for_less = false;
+  };
+
+
   /**
    * What the extension of a bond counts as in the force of the linear peridynamic solid, in its
    * place: with W x e* of this law the bond pulls by the force spring W x e* + tau of
@@ -51,8 +59,11 @@ namespace PeriDeal
       return false;
     }
 
-    /** What has been found wrong with it so far, empty: nothing; null: it has no faults. */
-    virtual const std::string *fault() const
+    /**
+     * The first that has been wrong with it, from which on it is not asked again until who looks
+     * here clears it; null: it has no faults.
+     */
+    virtual LawFault *fault() const
     {
       return nullptr;
     }

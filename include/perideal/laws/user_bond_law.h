@@ -48,7 +48,7 @@ namespace PeriDeal
                   const bool        dissipated) const override;
     void   accept(const BondValues &bond, double *history) const override;
 
-    const std::string *fault() const override
+    LawFault *fault() const override
     {
       return &first_fault;
     }
@@ -63,6 +63,6 @@ namespace PeriDeal
     const unsigned int                       n_states;
     double                                   step = 0.;
     mutable std::vector<double>              next; // states, and numbers behind them
-    mutable std::string                      first_fault;
+    mutable LawFault                         first_fault;
   };
 } // namespace PeriDeal

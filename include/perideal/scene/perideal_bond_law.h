@@ -6,7 +6,7 @@
  * define the two functions below, and give the source, or a shared library made of it, as
  * `User law`:
  *
- *   cc -shared -fPIC -O2 -o law.so law.c
+ *   cc -shared -fPIC -O2 -I FOLDER -o law.so law.c      (FOLDER: where this file is)
  *
  * A bond of length x whose ends move apart by e has the stretch s = e/x. The linear peridynamic
  * solid pulls at its ends by c s (and what dilatations add, which stays as it is); c follows from
@@ -21,6 +21,10 @@ extern "C" {
 #endif
 
 #define PERIDEAL_BOND_LAW_VERSION 1
+
+/* What a law may return. */
+#define PERIDEAL_BOND_LAW_FINE 0
+#define PERIDEAL_BOND_LAW_SHORTER_STEP (-1) /* at rest: from the same states, by less */
 
 /* What a law is asked with. */
 struct perideal_bond
@@ -48,8 +52,9 @@ struct perideal_bond_answer
 int perideal_bond_law_version(void);
 
 /*
- * Returns 0; anything else ends the run with a message. A law keeps nothing by itself: a step may
- * be asked for again, from the same states. next_states are those of this stretch.
+ * Returns PERIDEAL_BOND_LAW_FINE or PERIDEAL_BOND_LAW_SHORTER_STEP; anything else ends the run with
+ * a message. A law keeps nothing by itself: a step may be asked for again, from the same states.
+ * next_states are those of this stretch.
  */
 int perideal_bond_law(const struct perideal_bond  *bond,
                       struct perideal_bond_answer *answer,

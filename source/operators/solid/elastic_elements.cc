@@ -509,7 +509,8 @@ namespace PeriDeal
     const WithGhosts ghosts(u);
     breaking->add_released(
       mend_zone(breaking->parted_by(list), 0., breaking->rows_of(list), u, [&] {
-        breaking->bonds.set_rows(breaking->take(list, t), cells.factors);
+        if (const auto softer = breaking->take(list, t); body.material.law.softens())
+          breaking->bonds.set_rows(softer, cells.factors);
       }));
     join_stretched(u);
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
-#include <perideal/base/user_error.h>
 #include <perideal/laws/bond_force_formula.h>
 #include <perideal/laws/user_bond_law.h>
 #include <perideal/laws/viscoelastic_solid.h>
+#include <perideal/operators/solid/law_fault.h>
 #include <perideal/operators/solid/law_steps.h>
 
 #include <algorithm>
@@ -60,12 +60,17 @@ namespace PeriDeal
 
   void LawSteps::throw_faults(const MPI_Comm communicator) const
   {
-    const std::string *const fault = any() ? law->fault() : nullptr;
-    if (fault != nullptr) // on all processes or on none
-      throw_on_all_if_any(communicator,
-                          fault->empty() ? "" :
-                                           "Entry 'User law' in section 'Material': '" + file +
-                                             "' " + *fault + ".");
+    LawFault *const fault = any() ? law->fault() : nullptr;
+    if (fault == nullptr) // on all processes or on none
+      return;
+    const LawFault found = *fault;
+    *fault               = LawFault();
+    throw_law_fault(found.text.empty() ?
+                      "" :
+                      "Entry 'User law' in section 'Material': '" + file + "' " + found.text + ".",
+                    found.asks_for_less,
+                    accepted,
+                    communicator);
   }
 
 

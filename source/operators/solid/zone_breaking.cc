@@ -75,10 +75,10 @@ namespace PeriDeal
 
 
     /**
-   * Archive pairs with two numbers each, by the key of their first node and the place of the second
-   * one in its row, which is that of all members of the family: the same on all processes. Where a
-   * body is loaded they are those of all processes, in ascending order.
-   */
+     * Archive pairs with two numbers each, by the key of their first node and the place of the
+     * second one in its row, which is that of all members of the family: the same on all processes.
+     * Where a body is loaded they are those of all processes, in ascending order.
+     */
     template <int dim>
     void exchange_pairs(Archive               &archive,
                         const std::string     &name,

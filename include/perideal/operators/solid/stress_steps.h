@@ -8,9 +8,8 @@
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
 #include <perideal/laws/stress_law.h>
+#include <perideal/operators/solid/law_fault.h>
 #include <perideal/scene/body_parameters.h>
-
-#include <mpi.h>
 
 #include <string>
 #include <utility>
@@ -71,22 +70,7 @@ namespace PeriDeal
         return;
       const std::string of_this = std::move(fault);
       fault.clear();
-      const int own = of_this.empty() ? 0 : too_long ? 1 : 2;
-      int       all = 0;
-      MPI_Allreduce(&own, &all, 1, MPI_INT, MPI_MAX, communicator);
-      if (all == 0)
-        return;
-      try
-        {
-          throw_on_all_if_any(communicator, own == all ? of_this : "");
-        }
-      catch (const UserError &error)
-        {
-          constexpr double none = std::numeric_limits<double>::quiet_NaN();
-          if (all == 2)
-            throw;
-          throw Diverged(error.message(), "law", none, none, now);
-        }
+      throw_law_fault(of_this, too_long, now, communicator);
     }
 
     /** @param changes a state has changed, on any process */
