@@ -206,6 +206,7 @@ namespace PeriDeal
           : at_corners(run.dofs().get_fe().n_dofs_per_vertex() > 0)
           , unknowns(run.dofs().get_fe().n_dofs_per_cell())
         {
+          components.reserve(dim); // a vector that is copied forgets its ghosts
           for (unsigned int d = 0; d < dim; ++d)
             components.push_back(component_of(run.dofs(), run.displacement, dim, d));
         }
@@ -562,7 +563,11 @@ namespace PeriDeal
       FEValues<dim> values(dofs.get_fe(), QMidpoint<dim>(), update_gradients | update_JxW_values);
       std::vector<types::global_dof_index> indices(n);
       double                               turned = 0., whole = 0., largest = 0.;
-      run.displacement.update_ghost_values();
+      // Nodes of own cells need not be ghosts of bonds.
+      std::vector<Vector> components;
+      components.reserve(dim); // a vector that is copied forgets its ghosts
+      for (unsigned int d = 0; d < dim; ++d)
+        components.push_back(component_of(dofs, run.displacement, dim, d));
       for (const auto &cell : dofs.active_cell_iterators())
         if (cell->is_locally_owned())
           {
@@ -571,7 +576,7 @@ namespace PeriDeal
             Tensor<2, dim> gradient;
             for (unsigned int i = 0; i < n; ++i)
               for (unsigned int d = 0; d < dim; ++d)
-                gradient[d] += run.displacement(dim * indices[i] + d) * values.shape_grad(i, 0);
+                gradient[d] += components[d](indices[i]) * values.shape_grad(i, 0);
             const Tensor<2, dim> strain = 0.5 * (gradient + transpose(gradient));
             const double         angle  = (gradient - strain).norm() / std::sqrt(2.);
             whole += values.JxW(0);
@@ -580,7 +585,6 @@ namespace PeriDeal
             turned += values.JxW(0);
             largest = std::max(largest, angle);
           }
-      run.displacement.set_ghost_state(false);
       const auto communicator = dofs.get_communicator();
       turned = Utilities::MPI::sum(turned, communicator) / Utilities::MPI::sum(whole, communicator);
       largest = Utilities::MPI::max(largest, communicator);

@@ -174,11 +174,6 @@ namespace PeriDeal
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
       refuse_cracks(body, refuse);
       refuse(is_warm_body(body), "which knows no 'Temperature change' (section 'Elasticity').");
-      body.elasticity.refuse(
-        !body.cracks.cracks.empty() && body.elasticity.contact && body.elasticity.is_static(),
-        "Contact",
-        "is '" + body.elasticity.text("Contact") +
-          "', but the faces of cracks do not press on each other in a body at rest that is deformed much. Use 'false', with which they may run into each other.");
       refuse(
         !is_hyperelastic && dim == 2 && body.elasticity.plane == PlaneState::stress,
         "which finite elements have in three dimensions and in plane strain. Use 'Plane = strain', 'Law = hyperelastic', or 'Models = peridynamics'.");

@@ -257,6 +257,10 @@ def implicit():
     compare("bar, steady", BAR, {**ADAPTIVE["steady"], "Solver/Tolerance": "1e-12"}, bounds)
 
 
+HOLE_OF_THREE = {"Domain/Shape": "plate with hole", "Domain/Upper corner": "2, 2", "Domain/Cells": "29, 31", "Domain/Hole center": "1.1, 0.9", "Domain/Hole radius": "0.35", BC + "Symmetry": "bottom",
+                 "Time/End time": "0.02", "Time/Time step": "0.002", "Output/Write at": "0.02", "Output/Line": "0,1.8 ; 2,1.8 ; 9"}
+
+
 def solids():
     """Bodies at rest, warm and in motion, whose bonds stay."""
     motion_of_plate = {"Models": f"{FE}, {PD}", "Domain/Cells": "24, 18", "Domain/Upper corner": "1, 0.75", "Elasticity/Solver": "dynamics",
@@ -268,6 +272,8 @@ def solids():
     for what, overrides, bound in (("verlet", motion_of_plate, 1e-13), ("newmark", newmark, 1e-10), ("full kinematics, newmark", {**newmark, "Models": PD, "Elasticity/Kinematics": "full"}, 1e-10),
                                    ("full kinematics", bend, 5e-10), ("relaxation", {**bend, "Elasticity/Solver": "adaptive dynamic relaxation"}, 5e-10)):
         compare(what, elastic_solvers.PLATE, overrides, on_line(bound), ranks=(2,))
+    # On three processes one has cells none of whose corners is its own or near one that is.
+    compare("verlet, a hole", elastic_solvers.PLATE, {**motion_of_plate, "Models": PD, **HOLE_OF_THREE}, on_line(1e-13), ranks=(3,))
 
     # Doubled vertices, three dimensions, a mesh from a file with a plane of symmetry. Measured: 1.1e-11; solvers stop at 1e-12.
     for name in ("elasticity/crack_in_tension.prm", "elasticity/torsion.prm", "papers/le_2014/example_1_elements.prm"):

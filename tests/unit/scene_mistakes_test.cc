@@ -294,7 +294,6 @@ Material/Bulk modulus= & Material/Shear modulus= & Material/Young modulus=1 & Ma
 Material/Bulk modulus= & Material/Shear modulus= & Material/Young modulus=1 & Material/Poisson ratio=0.5 & Elasticity/Plane=strain => 'Poisson ratio' | less than 0.5
 Material/Law=linear & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 & Elasticity/Plane=strain => 'Kinematics' | 'full' | 'Temperature change'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Plane=strain => 'Kinematics' | 'Law = hyperelastic'
-Elasticity/Plane=strain & Cracks/Segments=0.2,0.5 ; 0.4,0.5 => 'Contact' | deformed much | 'false'
 )");
   }
 
