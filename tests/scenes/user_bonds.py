@@ -10,7 +10,7 @@
 import os
 import subprocess
 
-from scene_test import PD, Comparison, check, check_less, check_message, check_one_message, run_parts, run_perideal, run_scene, temporary_folder, write_file
+from scene_test import PD, SOURCE_DIR, Comparison, check, check_less, check_message, check_one_message, run_parts, run_perideal, run_scene, temporary_folder, write_file
 
 BAR = "prm/elasticity/user_bonds.prm"
 PLATE = "prm/fracture/branching_crack.prm"
@@ -129,7 +129,7 @@ def mistakes():
             ({"Material/Phases/Regions": "a: x - 0.5", "Material/Phases/User properties": "a: 1, 2"}, ("User properties", "bonds that lead from one to another have one law"))):
         check_message(run_scene(BAR, {**user(good), **overrides}, expect_error=True), *words)
     # check tells the law
-    status, stdout, _ = run_perideal(["check", BAR])
+    status, stdout, _ = run_perideal(["check", os.path.join(SOURCE_DIR, BAR)])
     check(status == 0 and "user_bonds.c, properties: 2, states: 1" in stdout, f"check tells the law: {stdout[-1500:]}")
 
 
