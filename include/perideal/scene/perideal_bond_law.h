@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the PeriDeal authors
- *
+ */
+#pragma once
+
+/**
  * A law of bonds of one's own for PeriDeal (`Law = user` in section `Material`, with
  * `Models = peridynamics`), in C or any language that can be called from it. Include this file,
  * define the two functions below, and give the source, or a shared library made of it, as
@@ -13,8 +16,12 @@
  * the moduli of the scene and the family. With a law of one's own it pulls by c F, F the force
  * that the law answers with: F = s is the linear solid. Energies are those over c: s^2/2 of the
  * linear solid.
+ *
+ * s, F and the energies over c have no unit; lengths and times are those of the scene. F is
+ * positive where the bond pulls. The solid is that of Silling et al. 2007; class UserBondLaw asks.
+ * Calls are not collective: each process asks for its own bonds, in any order, and both ends of a
+ * bond ask, each from states of its own.
  */
-#pragma once
 
 #ifdef __cplusplus
 extern "C" {
@@ -22,11 +29,11 @@ extern "C" {
 
 #define PERIDEAL_BOND_LAW_VERSION 1
 
-/* What a law may return. */
+/** What a law may return. */
 #define PERIDEAL_BOND_LAW_FINE 0
 #define PERIDEAL_BOND_LAW_SHORTER_STEP (-1) /* at rest: from the same states, by less */
 
-/* What a law is asked with. */
+/** What a law is asked with. */
 struct perideal_bond
 {
   double        stretch;      /* s, what the temperature stretches by taken off */
@@ -39,7 +46,7 @@ struct perideal_bond
   const double *states;   /* of the bond in the last accepted state, at first 0 */
 };
 
-/* What a law answers with; all of it is 0 before. */
+/** What a law answers with; all of it is 0 before. */
 struct perideal_bond_answer
 {
   double force;      /* F, 0 at s = 0 in a bond with states 0 */
@@ -48,10 +55,10 @@ struct perideal_bond_answer
   double dissipated; /* energy lost since the last accepted state, over c */
 };
 
-/* Returns PERIDEAL_BOND_LAW_VERSION. */
+/** Returns PERIDEAL_BOND_LAW_VERSION. */
 int perideal_bond_law_version(void);
 
-/*
+/**
  * Returns PERIDEAL_BOND_LAW_FINE or PERIDEAL_BOND_LAW_SHORTER_STEP; anything else ends the run with
  * a message. A law keeps nothing by itself: a step may be asked for again, from the same states.
  * next_states are those of this stretch.
