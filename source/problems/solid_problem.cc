@@ -460,11 +460,13 @@ namespace PeriDeal
     if (loading && !scene.time.steady)
       {
         const unsigned int n_halved = loading->n_divisions();
-        context.progress.line(this->name() + ": " + std::to_string(n_iterations) + " iterations" +
-                              (n_halved > 0 ?
-                                 ", load steps were halved " + std::to_string(n_halved) +
-                                   (n_halved > 1 ? " times" : " time") :
-                                 ""));
+        const double       least    = loading->least_load_factor();
+        context.progress.line(
+          this->name() + ": " + std::to_string(n_iterations) + " iterations" +
+          (n_halved > 0 ? ", load steps were halved " + std::to_string(n_halved) +
+                            (n_halved > 1 ? " times" : " time") :
+                          "") +
+          (least < 1. ? ", at least " + rounded_text(least) + " of the loads were borne" : ""));
       }
     note_end_of_solid(*this, context);
   }
@@ -480,9 +482,11 @@ namespace PeriDeal
     options.multigrid      = scene.elasticity.multigrid();
     // Where stretches are known; what softens waits for no motion.
     options.breaks_in_motion = scene.elasticity.breaks_in_motion() && !scene.material.law.softens();
-    options.remembers        = !scene.material.law.user.library.empty();
-    options.divides_steps    = // temperatures are those of their ends
-      !scene.warms_slowly() && !scene.material.law.softens();
+    if (scene.elasticity.controls_loads())
+      options.control_share = scene.elasticity.dissipation_step;
+    options.remembers     = !scene.material.law.user.library.empty();
+    options.divides_steps = // temperatures are those of their ends
+      !scene.warms_slowly() && !scene.material.law.softens() && options.control_share == 0.;
     auto solver = make_static_solver(scene.elasticity.solver_name(), op(), options);
     loading     = std::make_unique<SlowLoading>(op(), std::move(solver), options);
     if (scene.guards.goes_on())

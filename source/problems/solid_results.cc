@@ -600,6 +600,8 @@ namespace PeriDeal
       {
         const LoadingEnergy energy = loading->energy(displacement);
         add_all(energy, energy.dissipated);
+        if (scene.elasticity.controls_loads())
+          add("load factor", "load factor", op().stepping.load_factor);
       }
     return balance;
   }

@@ -3,6 +3,7 @@
 
 #include <perideal/scene/elasticity_control.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/vector_conditions.h>
 
 namespace PeriDeal
 {
@@ -58,10 +59,21 @@ namespace PeriDeal
       "`dynamics`, the motion until `End time`. Where loads depend on t there is an equilibrium at each `Time step` (section `Time`), else one.";
     declare("Preconditioner", EntryType::choice, "multigrid", "", {"multigrid", "none"}) =
       "Of `Solver = conjugate gradients`: multigrid on springs between nearest neighbours, or none as published (Le 2014).";
-    declare("Breaking", EntryType::choice, "auto", "", {"auto", "in motion", "at rest"}) =
+    declare("Breaking",
+            EntryType::choice,
+            "auto",
+            "",
+            {"auto", "in motion", "at rest", "controlled"}) =
       "Of bodies at rest whose bonds break, `in motion`: once the first bonds have broken, the others break in a damped motion from equilibrium to equilibrium; or `at rest`, "
       "in one equilibrium after the other, in each those whose stretch is at least 0.9 of the largest. Then slow cracks are drawn to the rows of the lattice. "
-      "`auto` is in motion.";
+      "`auto` is in motion; bonds that soften (`Law = softening`) do so at rest. `controlled`: where the body would give way at once (snap-back) loads and prescribed displacements go back, "
+      "as in a test that is controlled by the opening of a crack; `load factor` in totals.csv is what they are times. Linear bodies of one temperature.";
+    declare(dissipation_step,
+            "Dissipation step",
+            "0.02",
+            "1",
+            {0., 1., false, "a share, greater than 0 and less than 1"}) =
+      "With `Breaking = controlled`: a load step ends when it has dissipated this share of the largest strain energy so far, or bears the whole loads of its time.";
     declare("Crack direction", EntryType::choice, "bonds", "", {"bonds", "mean tension"}) =
       "Two dimensions only, of bodies at rest whose bonds break: where cracks of section `Cracks` go as they grow, wherever bonds are stretched too far (`bonds`), or straight across the "
       "largest tension, a mean over the bonds about the tip (`mean tension`): then of the bonds within two horizons of a crack those alone break that lie in its way. "
@@ -110,6 +122,19 @@ namespace PeriDeal
     refuse(is_given("Breaking") && !is_static(),
            "Breaking",
            "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
+    refuse(is_given("Dissipation step") && !controls_loads(),
+           "Dissipation step",
+           "has no effect: 'Breaking' is '" + text("Breaking") +
+             "'. Use 'Breaking = controlled', or leave the entry out.");
+    refuse(controls_loads() &&
+             (has_full_kinematics() || computes_temperature || !is_zero(temperature_change)),
+           "Breaking",
+           std::string(
+             "'controlled' is for bodies whose displacements are in proportion to the loads; ") +
+             (has_full_kinematics() ?
+                "'Kinematics' is 'full'. Use 'small', or" :
+                "those of a 'Temperature change' are not. Leave it out, or use") +
+             " 'at rest' or 'in motion' here.");
     refuse(is_given("Crack direction") && !is_static(),
            "Crack direction",
            "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");

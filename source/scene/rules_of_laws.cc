@@ -31,9 +31,10 @@ namespace PeriDeal
         "Law",
         "'softening' is not for cracks that grow by 'Growth' or 'Paths' (section 'Cracks'): bonds soften and break where they are stretched. Leave these out.");
       body.elasticity.refuse(
-        body.elasticity.is_given("Breaking"),
+        body.elasticity.is_given("Breaking") && !body.elasticity.controls_loads(),
         "Breaking",
-        "is for bonds that break at once; with 'Law = softening' (section 'Material') they soften from equilibrium to equilibrium. Leave it out.");
+        "found '" + body.elasticity.text("Breaking") +
+          "', which is for bonds that break at once; with 'Law = softening' (section 'Material') they soften from equilibrium to equilibrium. Leave it out, or use 'controlled'.");
       body.elasticity.refuse(
         body.elasticity.text("Crack direction") == "mean tension",
         "Crack direction",

@@ -366,7 +366,7 @@ namespace PeriDeal
       examine(u, v, span.now);
     else if (spent.steps % between_checks == 0 || is_last)
       check(v, span.now);
-    if (spent.steps % op.explicit_steps.between_looks != 0 || !follow_body(u, span.now) || is_last)
+    if (spent.steps % op.stepping.between_looks != 0 || !follow_body(u, span.now) || is_last)
       return;
     span.start   = span.now;
     span.n_steps = n_equal_steps(span.end - span.now, longest);
@@ -443,7 +443,7 @@ namespace PeriDeal
       UserError("'Stepper' in section 'Time' is '" + name +
                 "', which is not for motion. Known: " + join_names(motion_stepper_names()) + "."));
     require_mass(op);
-    op.explicit_steps.follow = explicit_step; // from the first product on
+    op.stepping.follow = explicit_step; // from the first product on
     StepperOptions chosen    = options;
     const double   limit = explicit_step || options.time_step < 0. ? stable_motion_step(op) : 0.;
     if (options.time_step < 0.)

@@ -191,7 +191,9 @@ namespace PeriDeal
     for (Vector *v : {&before.state, &before.change, &memory.unbalanced, &memory.scratch})
       op.initialize_vector(*v);
     if (options.breaks_in_motion && op.brittle())
-      motion.emplace(op);
+      breaks.motion.emplace(op);
+    if (options.control_share > 0. && op.brittle())
+      breaks.control.emplace(op, options.control_share);
   }
 
 
@@ -200,6 +202,8 @@ namespace PeriDeal
     const unsigned long long n_broken = op.n_broken_bonds();
     tell_broken_bonds(op.brittle() ? n_broken : std::numeric_limits<unsigned long long>::max());
     tell_equilibrium();
+    if (breaks.control)
+      breaks.control->take_forward(u);
     try
       {
         // What contact has changed by then cannot be undone.
@@ -242,6 +246,8 @@ namespace PeriDeal
       }
     check_inversion(u, t);
     op.linearize(u);
+    if (breaks.control)
+      breaks.control->take_back(u);
   }
 
 
@@ -264,13 +270,15 @@ namespace PeriDeal
   bool SlowLoading::break_bonds(Vector &u, const double t)
   {
     constexpr double share = 0.9; // of the largest stretch: what breaks at once
+    if (breaks.control)
+      return breaks.control->break_bonds(u, t, op.energy(u), so_far.dissipated);
     // What is stretched much too far would break all at once in a motion.
-    const double most  = motion ? op.stretch_over_critical(u) : 0.;
+    const double most  = breaks.motion ? op.stretch_over_critical(u) : 0.;
     const bool   moves = most > 0. && most < shatters;
     if (op.break_bonds(u, t, share) == 0)
       return false;
     if (moves)
-      counts.iterations += motion->run(u, t);
+      counts.iterations += breaks.motion->run(u, t);
     return true;
   }
 
@@ -282,17 +290,15 @@ namespace PeriDeal
     if (!breaking.is_open)
       breaking = {t, op.energy(u), false, true, breaking.goal, breaking.most, breaking.division};
     bool grown = op.grow_cracks(u, t);
-    if (grown && motion)
-      motion->operator_changed();
+    if (grown && breaks.motion)
+      breaks.motion->operator_changed();
     // Nodes join a zone until none does; only then bonds break.
     for (memory.scratch = u; grown || op.widen_zone(u) || break_bonds(u, t); grown = false)
       {
         breaking.any = true;
         solver->operator_changed();
         solve(u, t);
-        memory.scratch.sadd(-1., 1., u);
-        // Supports are at rest.
-        const double gain = memory.scratch * work_of_forces.loads(), left = op.energy(u);
+        const double gain = work_since(memory.scratch, u, t), left = op.energy(u);
         memory.scratch = u;
         so_far.work += gain;
         so_far.dissipated += breaking.energy + gain - left;
@@ -307,6 +313,18 @@ namespace PeriDeal
       return;
     op.unbalanced(memory.unbalanced, u, t);
     work_of_forces.begin(memory.unbalanced, t);
+  }
+
+
+  double SlowLoading::work_since(Vector &last, const Vector &u, const double t)
+  {
+    if (breaks.control)
+      {
+        op.unbalanced(memory.unbalanced, u, t);
+        return work_of_forces.step(last, u, memory.unbalanced, t);
+      }
+    last.sadd(-1., 1., u);
+    return last * work_of_forces.loads(); // supports and loads are at rest
   }
 
 
@@ -331,7 +349,7 @@ namespace PeriDeal
     double           end      = t;
     if (!options.divides_steps || !op.brittle())
       return {end, 0.};
-    const double begins = motion ? begins_in_motion : begins_at_rest;
+    const double begins = breaks.motion ? begins_in_motion : begins_at_rest;
     double       most   = op.stretch_over_critical(u);
     while (most > begins && end - reached.time > shortest * (breaking.goal - reached.time))
       {
@@ -364,7 +382,9 @@ namespace PeriDeal
         }
       catch (const StepLeft &)
         {
-          u                = before.state;
+          u = before.state;
+          if (breaks.control)
+            breaks.control->leave_step();
           reached.size     = size_before;
           breaking.goal    = goal_before;
           counts.divisions = divisions_before;
@@ -453,6 +473,8 @@ namespace PeriDeal
 
   void SlowLoading::reach(Vector &u, const AfterStep &before_breaks, const bool may_be_left)
   {
+    if (breaks.control)
+      breaks.control->begin_step();
     before.state           = u;
     const auto [end, most] = shorten(u, find_next_equilibrium(u, may_be_left));
     op.unbalanced(memory.unbalanced, u, end);
@@ -520,8 +542,10 @@ namespace PeriDeal
     archive.exchange("length of the step", breaking.division.whole);
     archive.exchange("last part of a step", breaking.division.last);
     archive.exchange("divisions", counts.divisions);
-    if (motion)
-      motion->exchange(archive);
+    if (breaks.motion)
+      breaks.motion->exchange(archive);
+    if (breaks.control)
+      breaks.control->exchange(archive);
     work_of_forces.exchange(archive, keys);
     solver->exchange(archive);
   }

@@ -18,7 +18,7 @@ namespace PeriDeal
       Verlet(ElasticOperator &op, const double dt)
         : MotionStepper(op, dt, 0.125)
       {
-        op.explicit_steps.follow = true;
+        op.stepping.follow = true;
       }
 
       std::string name() const override

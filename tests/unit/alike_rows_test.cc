@@ -41,7 +41,7 @@ namespace
   void check_same(const Settings &settings, const ModelKind model, const bool shares)
   {
     Body<dim> plain(settings, model), sharing(settings, model);
-    sharing.op().explicit_steps.follow = true;
+    sharing.op().stepping.follow = true;
     EXPECT_LT((difference<dim>(sharing, plain)), 1e-13);
     const OperatorSize before = plain.op().size(), after = sharing.op().size();
     EXPECT_EQ(before.nonzeros, after.nonzeros);
@@ -105,7 +105,7 @@ TEST_IN_DIMENSIONS(AlikeRows, rows_that_breaking_bonds_mend, 2, 3)
   const Settings settings = many_cells<dim>() + Settings{{"Coupling/Zone", "follow"},
                                                          {"Material/Critical stretch", "0.01"}};
   Body<dim>      plain(settings, ModelKind::coupled), sharing(settings, ModelKind::coupled);
-  sharing.op().explicit_steps.follow = true;
+  sharing.op().stepping.follow = true;
   for (const double width : {8000., 600., 200.})
     {
       Vector u = plain.values([&](const Point<dim> &p) {
@@ -137,7 +137,7 @@ TEST(AlikeRows, rows_that_growing_cracks_mend)
                                {"Time/End time", "1"}};
   Body<2> plain(settings, ModelKind::finite_elements),
     sharing(settings, ModelKind::finite_elements);
-  sharing.op().explicit_steps.follow = true;
+  sharing.op().stepping.follow = true;
   const Vector u                     = plain.values(bumpy_vector<2>);
   for (const double t : {0., 0.3, 0.7, 1.})
     {

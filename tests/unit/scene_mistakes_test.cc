@@ -177,6 +177,10 @@ Boundary conditions/Displacement=left: 0, 0; right: t, 0 & Time/Steady=true => '
 Models=coupled & Material/Critical stretch=0.1 & Coupling/Zone=cracks: 1 => 'Zone' | is empty | 'follow'
 Material/Weibull modulus=10 & Material/Strength seed=1 => 'Weibull modulus' | bonds that break | 'Fracture energy' | 'Critical stretch'
 Elasticity/Breaking=at rest => 'Breaking' in section 'Elasticity' | bonds that break | 'Fracture energy'
+Elasticity/Dissipation step=0.1 => 'Dissipation step' | 'Breaking = controlled'
+Material/Critical stretch=0.1 & Elasticity/Breaking=controlled & Elasticity/Dissipation step=2 => 'Dissipation step' in section 'Elasticity' | 2 | less than 1
+Material/Critical stretch=0.1 & Elasticity/Breaking=controlled & Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Breaking' | in proportion to the loads | 'small'
+Material/Critical stretch=0.1 & Elasticity/Breaking=controlled & Elasticity/Temperature change=10 & Material/Thermal expansion=1e-5 => 'Breaking' | 'Temperature change' | 'at rest'
 Elasticity/Kinematics=full => 'Kinematics' | 'linear' | 'conjugate gradients'
 Elasticity/Preconditioner=none => 'Preconditioner' | conjugate gradients | 'linear'
 Boundary conditions/Displacement=left: 0, 0 ; top: 1 + if(x > 0.5, 0, free), 0 => 'Displacement' | 'top' | component in x | if(condition, formula, free)

@@ -28,6 +28,7 @@ namespace PeriDeal
     bool          computes_temperature = false; // by the heat problem of the same scene
     double        reference_temperature;        // of the unstressed body, where it is computed
     double        broken_bonds_conduct;         // of heat: their transmission, 0 to 1
+    double        dissipation_step;             // of `Breaking = controlled`, 0 to 1
     bool          contact = true;               // faces of cracks bear pressure where they can
     ElasticSolver solver;
     /** Absolute temperature of the unstressed body, with `Heat of deformation` only. */
@@ -69,9 +70,15 @@ namespace PeriDeal
     }
 
     /** What bonds of bodies at rest do once the first have broken. */
+    /** Loads go back where bonds break. */
+    bool controls_loads() const
+    {
+      return text("Breaking") == "controlled";
+    }
+
     bool breaks_in_motion() const
     {
-      return text("Breaking") != "at rest";
+      return text("Breaking") != "at rest" && !controls_loads();
     }
 
     /** `conjugate gradients` and so on, as in scenes. */

@@ -18,7 +18,7 @@ namespace PeriDeal
   /**
    * Watches that the steps of an explicit motion stay stable while the body deforms and breaks: the
    * limit 2/omega_max is that of the tangent, which changes with the directions and forces of the
-   * bonds. Looking (ElasticOperator::explicit_steps) costs half an application where bonds are
+   * bonds. Looking (ElasticOperator::stepping) costs half an application where bonds are
    * those of the deformed body, else nothing; a new estimate, by Lanczos iterations, some thirty.
    * There is one only when the largest stretch has changed much, bonds have broken or cracks have
    * grown since the last, and only as long as all of them together take at most some percent of

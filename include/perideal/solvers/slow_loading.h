@@ -5,6 +5,7 @@
 
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/solvers/findings.h>
+#include <perideal/solvers/load_control.h>
 #include <perideal/solvers/motion_energy.h>
 #include <perideal/solvers/static_solver.h>
 #include <perideal/solvers/step_span.h>
@@ -101,8 +102,8 @@ namespace PeriDeal
    * none is stretched too far. A step is divided where loads would stretch bonds by more than a few
    * percent of the critical stretch beyond it. Of the bonds that are stretched too far the most
    * stretched break first; what breaks then breaks in a damped motion (BreakingMotion), or, if that
-   * is not wanted or would shatter the body, is asked for again in the new equilibrium. Vectors are
-   * allocated once.
+   * is not wanted or would shatter the body, is asked for again in the new equilibrium. Or loads go
+   * back where bonds break (LoadControl). Vectors are allocated once.
    */
   class SlowLoading
   {
@@ -173,6 +174,12 @@ namespace PeriDeal
       return counts.divisions;
     }
 
+    /** The smallest share of the loads of a time that were borne (LoadControl). */
+    double least_load_factor() const
+    {
+      return breaks.control ? breaks.control->least_factor() : 1.;
+    }
+
     /** Of the solver so far. */
     unsigned int n_iterations() const
     {
@@ -222,13 +229,19 @@ namespace PeriDeal
 
     bool break_bonds(Vector &u, const double t);
     void change_bonds(Vector &u, const double t, const AfterStep &after_round);
-    void check_inversion(Vector &u, const double t);
+    /** Of loads and supports, in a round in which bonds have changed. @p last is overwritten. */
+    double work_since(Vector &last, const Vector &u, const double t);
+    void   check_inversion(Vector &u, const double t);
 
     ElasticOperator              &op;
     std::unique_ptr<StaticSolver> solver;
     const StaticOptions           options;
-    std::optional<BreakingMotion> motion; // where bonds break in one
-    LastStep                      before;
+    struct
+    {
+      std::optional<BreakingMotion> motion; // where bonds break in one
+      std::optional<LoadControl>    control;
+    } breaks;
+    LastStep before;
     struct
     {
       Vector unbalanced, scratch;

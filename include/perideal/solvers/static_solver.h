@@ -21,6 +21,9 @@ namespace PeriDeal
     bool         multigrid      = true; // preconditions the conjugate gradients
     // Of SlowLoading: bonds break in a motion between equilibria; loads are those of any time.
     bool breaks_in_motion = true, divides_steps = true;
+    // Of SlowLoading: loads go back where bonds break (LoadControl), and a step of them dissipates
+    // about this share of the largest strain energy so far; 0: they do not.
+    double control_share = 0.;
     // The law is not asked for a step back to no displacement, in which forces are no loads.
     bool remembers = false;
   };

@@ -251,12 +251,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  void DisplacementConditions<dim>::distribute(Vector &u, const double t) const
+  void DisplacementConditions<dim>::distribute(Vector &u, const double t, const double factor) const
   {
     for (const Prescribed &entry : prescribed)
-      u.local_element(entry.unknown) = entry.value == nullptr ? 0. :
-                                       entry.rate             ? moved(entry, t) :
-                                                                entry.value->value(entry.position, t);
+      u.local_element(entry.unknown) =
+        entry.value == nullptr ?
+          0. :
+          factor * (entry.rate ? moved(entry, t) : entry.value->value(entry.position, t));
   }
 
 

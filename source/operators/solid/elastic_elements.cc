@@ -438,7 +438,7 @@ namespace PeriDeal
             }
         }
     };
-    if (!this->explicit_steps.follow)
+    if (!this->stepping.follow)
       mend_diagonal();
     if (law)
       tell_damage(*breaking, law->nodal);
@@ -578,7 +578,7 @@ namespace PeriDeal
     loads = thermal_loads;
     loads.zero_out_ghost_values();
     mechanical.for_each(t, [&](const auto, const auto unknown, const auto, const double value) {
-      loads(unknown) += value;
+      loads(unknown) += this->stepping.load_factor * value;
     });
     loads.compress(VectorOperation::add);
     hanging.condense(loads);
@@ -601,7 +601,7 @@ namespace PeriDeal
     reactions -= loads;
     conditions->add_reactions(reactions, sums);
     mechanical.for_each(t, [&](const auto side, const auto, const auto d, const double value) {
-      sums[side][d] += value;
+      sums[side][d] += this->stepping.load_factor * value;
     });
     return gather_forces(sums, body, nodes->get_mpi_communicator());
   }
@@ -611,7 +611,7 @@ namespace PeriDeal
   void ElasticElements<dim>::multiply(Vector &y, const Vector &x) const
   {
     // Where explicit steps follow, but for growing cracks, which change the matrix itself.
-    if (this->explicit_steps.follow && !cells.is_full() && !stiffness.was_asked_to_share() &&
+    if (this->stepping.follow && !cells.is_full() && !stiffness.was_asked_to_share() &&
         !hanging.any() && body.domain.has_lattice() &&
         (!zone_bonds || breaking || !this->has_growing_cracks()))
       stiffness.share_rows(nodes, places_on_lattice(positions, body.domain));
@@ -668,7 +668,7 @@ namespace PeriDeal
     // Explicit steps, and the start of a motion, have the body in view that does not flow.
     const bool starts = !body.elasticity.is_static() && cells.stresses &&
                         !cells.stresses->has_begun();
-    if (!cells.stresses || (!cells.is_full() && (this->explicit_steps.follow || starts)))
+    if (!cells.stresses || (!cells.is_full() && (this->stepping.follow || starts)))
       return;
     stiffness.sparse() = 0.;
     cells.stresses->add_tangent(stiffness, hanging, u);

@@ -80,7 +80,7 @@ namespace PeriDeal
   {
     constexpr unsigned int soon = 5; // steps within which soft bodies may deform much
     if (body.material.law.kind == SolidLaw::hyperelastic)
-      this->explicit_steps.between_looks = soon;
+      this->stepping.between_looks = soon;
     if (of_nodes)
       set_layout(of_nodes);
   }
@@ -300,10 +300,11 @@ namespace PeriDeal
     ++this->applications;
     find_forces(r, u, t);
     contact->add_forces(r, u, 1.);
-    if (loads_vary)
+    const bool vary = loads_vary || this->stepping.scales_loads;
+    if (vary)
       find_loads(scratch, t);
     NodeLoops::subtract_from(r.begin(),
-                             (loads_vary ? scratch : constant_loads).begin(),
+                             (vary ? scratch : constant_loads).begin(),
                              r.locally_owned_size());
   }
 

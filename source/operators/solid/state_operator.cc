@@ -243,7 +243,7 @@ namespace PeriDeal
   {
     all_loads = thermal_loads;
     loads.for_each(t, [&](const auto, const unsigned int unknown, const double value) {
-      all_loads.local_element(unknown) += value;
+      all_loads.local_element(unknown) += this->stepping.load_factor * value;
     });
   }
 
@@ -268,7 +268,7 @@ namespace PeriDeal
             sums[side] += force;
       }
     loads.for_each(t, [&](const auto side, const unsigned int unknown, const double value) {
-      sums[side][unknown % dim] += value;
+      sums[side][unknown % dim] += this->stepping.load_factor * value;
     });
     return gather_forces(sums, body, solid.families.nodes().communicator());
   }
@@ -624,7 +624,7 @@ namespace PeriDeal
       }
     if (of_nodes && !solid.ends.images && !solid.correspondence())
       mend_stiffness_diagonal(solid, *of_nodes, stiffness_diagonal);
-    else if (!of_nodes || !this->explicit_steps.follow)
+    else if (!of_nodes || !this->stepping.follow)
       find_stiffness_diagonal(solid, stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
     if (solid.thermal.any())

@@ -74,8 +74,8 @@ namespace PeriDeal
      */
     void let_follow(std::vector<unsigned int> unknowns);
 
-    /** Set the prescribed values of time t. */
-    void distribute(Vector &u, const double t) const;
+    /** Set the prescribed values of time t, times a factor. */
+    void distribute(Vector &u, const double t, const double factor = 1.) const;
 
     /** Set what is not free to a value. */
     void mask(Vector &y, const double value = 0.) const;

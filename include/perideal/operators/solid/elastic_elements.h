@@ -134,7 +134,7 @@ namespace PeriDeal
 
     void distribute(Vector &u, const double t) const override
     {
-      conditions->distribute(u, t);
+      conditions->distribute(u, t, this->stepping.load_factor);
       hanging.interpolate(u);
     }
 

@@ -44,7 +44,7 @@ namespace PeriDeal
     void mechanical_loads(Vector &loads, const double t) const override;
     void distribute(Vector &u, const double t) const override
     {
-      conditions->distribute(u, t);
+      conditions->distribute(u, t, this->stepping.load_factor);
     }
 
     void distribute_homogeneous(Vector &x) const override
@@ -69,7 +69,7 @@ namespace PeriDeal
 
     bool depends_on_time() const override
     {
-      return loads_vary || conditions->depends_on_time();
+      return loads_vary || this->stepping.scales_loads || conditions->depends_on_time();
     }
 
     double next_event(const double t) const override
