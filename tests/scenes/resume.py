@@ -67,7 +67,7 @@ SCENES = {
                 ("elasticity/yielding_plate.prm", {"Domain/Cells": "12, 12", "Time/Time step": "0.1", "Solver/Tolerance": "1e-12", **NODAL}, IMPLICIT), ("fracture/following_zone.prm", {"Domain/Cells": "17, 25", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("fracture/softening_zone.prm", {"Domain/Lower corner": "-0.0925, 0", "Domain/Upper corner": "0.0925, 0.05", "Domain/Cells": "37, 10", "Solver/Tolerance": "1e-13", "Time/End time": "0.6",
                                                  "Boundary conditions/Parts": "load: top if abs(x) < 0.0055 ; left foot: bottom if abs(x + 0.0625) < 0.00275 ; right foot: bottom if abs(x - 0.0625) < 0.00275"}, 10 * IMPLICIT), # what softens lets round-off grow
-                ("fracture/snap_back.prm", {"Boundary conditions/Displacement": "left: 0, 0 ; right: 0.2*t, 0", "Solver/Tolerance": "1e-13", "Time/End time": "0.7"}, 10 * IMPLICIT),
+                ("fracture/snap_back.prm", {"Output/Probes": "", "Solver/Tolerance": "1e-13", "Time/End time": "0.7"}, 10 * IMPLICIT),
                 ("fracture/blended_zone.prm", {"Domain/Cells": "25, 37", "Solver/Tolerance": "1e-13", "Time/Time step": "0.05", "Time/End time": "0.5"}, IMPLICIT),
                 ("fracture/centre_crack.prm", {"Domain/Cells": "20, 40", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/thermal_stress.prm", {"Domain/Cells": "12, 48"}, IMPLICIT),
                 ("elasticity/heat_of_deformation.prm", {"Domain/Cells": "12, 12", "Time/End time": "1", "Output/Write at": "0.1"}, IMPLICIT),
