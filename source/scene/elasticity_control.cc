@@ -59,6 +59,13 @@ namespace PeriDeal
       "`dynamics`, the motion until `End time`. Where loads depend on t there is an equilibrium at each `Time step` (section `Time`), else one.";
     declare("Preconditioner", EntryType::choice, "multigrid", "", {"multigrid", "none"}) =
       "Of `Solver = conjugate gradients`: multigrid on springs between nearest neighbours, or none as published (Le 2014).";
+    declare_breaking();
+    parse();
+  }
+
+
+  void ElasticityControl::declare_breaking()
+  {
     declare("Breaking",
             EntryType::choice,
             "auto",
@@ -78,7 +85,6 @@ namespace PeriDeal
       "Two dimensions only, of bodies at rest whose bonds break: where cracks of section `Cracks` go as they grow, wherever bonds are stretched too far (`bonds`), or straight across the "
       "largest tension, a mean over the bonds about the tip (`mean tension`): then of the bonds within two horizons of a crack those alone break that lie in its way. "
       "So its direction hardly depends on that of the rows of nodes.";
-    parse();
   }
 
 
@@ -119,6 +125,21 @@ namespace PeriDeal
     refuse(is_given("Preconditioner") && solver != ElasticSolver::conjugate_gradients,
            "Preconditioner",
            "is for 'Solver = conjugate gradients'; 'Solver' is '" + solver_name() + "'.");
+    parse_breaking(dim);
+    refuse(
+      contact_is_asked() && has_full_kinematics() && is_static(),
+      "Contact",
+      "found 'true', which with 'Kinematics = full' is for 'Solver = dynamics' only; 'Solver' is '" +
+        solver_name() + "'. Leave one of them out.");
+    refuse(
+      has_full_kinematics() && solver == ElasticSolver::linear,
+      "Kinematics",
+      "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'conjugate gradients' or another solver.");
+  }
+
+
+  void ElasticityControl::parse_breaking(const unsigned int dim) const
+  {
     refuse(is_given("Breaking") && !is_static(),
            "Breaking",
            "is for bodies at rest; 'Solver' is 'dynamics'. Leave the entry out.");
@@ -141,15 +162,6 @@ namespace PeriDeal
     refuse(text("Crack direction") == "mean tension" && dim != 2,
            "Crack direction",
            "found 'mean tension', which is for 'Dimension = 2'. Leave the entry out.");
-    refuse(
-      contact_is_asked() && has_full_kinematics() && is_static(),
-      "Contact",
-      "found 'true', which with 'Kinematics = full' is for 'Solver = dynamics' only; 'Solver' is '" +
-        solver_name() + "'. Leave one of them out.");
-    refuse(
-      has_full_kinematics() && solver == ElasticSolver::linear,
-      "Kinematics",
-      "'full' is not linear in the displacement, but 'Solver' is 'linear'. Use 'conjugate gradients' or another solver.");
   }
 
 

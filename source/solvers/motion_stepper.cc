@@ -443,9 +443,9 @@ namespace PeriDeal
       UserError("'Stepper' in section 'Time' is '" + name +
                 "', which is not for motion. Known: " + join_names(motion_stepper_names()) + "."));
     require_mass(op);
-    op.stepping.follow = explicit_step; // from the first product on
-    StepperOptions chosen    = options;
-    const double   limit = explicit_step || options.time_step < 0. ? stable_motion_step(op) : 0.;
+    op.stepping.follow    = explicit_step; // from the first product on
+    StepperOptions chosen = options;
+    const double   limit  = explicit_step || options.time_step < 0. ? stable_motion_step(op) : 0.;
     if (options.time_step < 0.)
       chosen.time_step = (explicit_step ? StepLimit::share : many) * limit;
     else if (explicit_step)

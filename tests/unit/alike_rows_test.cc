@@ -138,7 +138,7 @@ TEST(AlikeRows, rows_that_growing_cracks_mend)
   Body<2> plain(settings, ModelKind::finite_elements),
     sharing(settings, ModelKind::finite_elements);
   sharing.op().stepping.follow = true;
-  const Vector u                     = plain.values(bumpy_vector<2>);
+  const Vector u               = plain.values(bumpy_vector<2>);
   for (const double t : {0., 0.3, 0.7, 1.})
     {
       plain.op().grow_cracks(u, t);

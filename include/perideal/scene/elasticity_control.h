@@ -97,6 +97,8 @@ namespace PeriDeal
     void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);
 
   private:
+    void declare_breaking();
+    void parse_breaking(const unsigned int dim) const;
     void parse_heat_of_deformation();
   };
 } // namespace PeriDeal

@@ -12,10 +12,10 @@ namespace PeriDeal
    * test that is controlled by the opening of the crack: at each equilibrium all loads and
    * prescribed displacements of the time are multiplied by the largest factor, at most 1, at which
    * no bond is stretched much farther than it has been; then the most stretched ones bear less, as
-   * if they were stretched a little farther. That follows a path of equilibria through snap-back, event by
-   * event (sequentially linear analysis: Rots 2001, there with jagged laws). A load step ends when
-   * the whole loads are borne, or a share of the largest strain energy so far has been dissipated
-   * on a way back, where loads do negative work.
+   * if they were stretched a little farther. That follows a path of equilibria through snap-back,
+   * event by event (sequentially linear analysis: Rots 2001, there with jagged laws). A load step
+   * ends when the whole loads are borne, or a share of the largest strain energy so far has been
+   * dissipated on a way back, where loads do negative work.
    *
    * For bodies whose forces are linear as long as bonds do not change: then the equilibrium under
    * f times the loads is f times that under the loads.

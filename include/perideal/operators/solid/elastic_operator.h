@@ -232,10 +232,9 @@ namespace PeriDeal
     {
       bool         follow        = false; // diagonal(), surrogate() need not know which bonds break
       unsigned int between_looks = 25;    // how many until one asks for largest_stretch() again
-      // What loads and prescribed displacements, but no thermal strains, are times (LoadControl).
-      bool   scales_loads = false;
-      double load_factor  = 1.;
-    } stepping; // what steppers and load steps ask for
+      bool         scales_loads  = false; // LoadControl
+      double       load_factor = 1.; // of loads and prescribed displacements, of no thermal strains
+    } stepping;                      // what steppers and load steps ask for
 
     /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */
     bool may_release_energy() const
