@@ -191,11 +191,11 @@ namespace PeriDeal
         body.material.refuse(is_so, "Young moduli", why);
       };
       refuse(
-        (!by_elements && !body.elasticity.is_correspondence()) || coupled,
-        "makes the body orthotropic, which is for 'Models = finite elements': bonds have two moduli. Use that, or 'Model = correspondence' (section 'Elasticity') with 'Models = peridynamics', or give "
+        (!by_elements || coupled) && !body.elasticity.is_correspondence(),
+        "makes the body orthotropic, which is for 'Models = finite elements': bonds have two moduli. Use that, or 'Model = correspondence' (section 'Elasticity'), or give "
         "'Young modulus' and 'Poisson ratio'.");
       refuse(
-        !by_elements && body.material.breaks(),
+        (!by_elements || coupled) && body.material.breaks(),
         "makes the body orthotropic, whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
       refuse(
         body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
@@ -217,8 +217,21 @@ namespace PeriDeal
         body.elasticity.refuse(is_so, "Model", "found 'correspondence', " + why);
       };
       const SolidLaw kind = body.material.law.kind;
-      refuse(coupled,
-             "which is for 'Models = peridynamics', not for 'coupled'. Use 'state-based'.");
+      body.coupling.refuse(
+        coupled && body.coupling.scheme == CouplingScheme::exchange,
+        "Scheme",
+        "found 'exchange', whose bonds are pairs, but 'Model = correspondence' (section 'Elasticity') has families. Use 'blending'.");
+      refuse(coupled && kind != SolidLaw::linear,
+             "which 'Models = coupled' knows with 'Law = linear' (section 'Material'), found '" +
+               body.material.text("Law") +
+               "'. Use that, or 'Models = peridynamics' or 'finite elements'.");
+      refuse(
+        coupled && body.material.breaks(),
+        "whose bonds do not break beside elements: leave 'Fracture energy' and 'Critical stretch' (section 'Material') out, or use 'state-based', or 'Models = peridynamics'.");
+      body.peridynamics.refuse(
+        coupled && body.peridynamics.completes_families(),
+        "Surface correction",
+        "found 'fictitious nodes', but families of 'Model = correspondence' (section 'Elasticity') end at the surface beside elements. Use 'auto' or 'none'.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3. Use 'state-based'.");
       refuse(
         body.elasticity.has_full_kinematics() && kind != SolidLaw::hyperelastic,

@@ -3,6 +3,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/smallest_eigenvalue.h>
+#include <perideal/laws/nodal_stiffness.h>
 #include <perideal/operators/solid/node_shapes.h>
 
 #include <Eigen/Eigenvalues>
@@ -15,31 +16,6 @@ namespace PeriDeal
 
   namespace
   {
-    /** Of a stiffness, or a compliance: the shear modulus of its mean over all directions. */
-    template <int dim>
-    double mean_shear(const SymmetricTensor<4, dim> &C)
-    {
-      if (dim == 1)
-        return 0.5 * C[0][0][0][0];
-      double trace = 0., of_volume = 0.;
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = 0; b < dim; ++b)
-          {
-            trace += C[a][b][a][b];
-            of_volume += C[a][a][b][b];
-          }
-      return (trace - of_volume / dim) / (dim * (dim + 1.) - 2.);
-    }
-
-
-    /** A shear modulus by which no shear is much stiffer than in the body: Reuss's mean. */
-    template <int dim>
-    double soft_shear(const SymmetricTensor<4, dim> &C)
-    {
-      return 0.25 / mean_shear(invert(C));
-    }
-
-
     /** The largest eigenvalue of a stiffness as a map of strains. */
     template <int dim>
     double largest_modulus(const SymmetricTensor<4, dim> &C)
@@ -121,7 +97,7 @@ namespace PeriDeal
         const bool   holds = !lost ||
                            dim * smallest_eigenvalue(M) > few * q * families.nodes().volume(i);
         shape.inverse    = holds ? invert(M) : Full();
-        shape.stabilizer = holds ? dim * (dim + 2.) * shape.shear / q : 0.;
+        shape.stabilizer = holds ? PeriDeal::stabilizer<dim>(shape.shear, q) : 0.;
       }
   }
 
