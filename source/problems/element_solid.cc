@@ -304,7 +304,8 @@ namespace PeriDeal
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }
         // Its fields would have to be mirrored, too.
-        if (model == ModelKind::coupled && scene.coupling.certificate &&
+        const bool has_matrix = !scene.elasticity.is_correspondence() || !elements->nonlinear();
+        if (model == ModelKind::coupled && scene.coupling.certificate && has_matrix &&
             elements->mirrors().empty())
           certify();
       }

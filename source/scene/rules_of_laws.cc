@@ -80,8 +80,8 @@ namespace PeriDeal
         body.material.refuse(is_so, "Law", "found 'plastic', " + why);
       };
       refuse(
-        coupled,
-        "which finite elements and peridynamics know, but 'coupled' in 'Models' does not. Leave it out.");
+        coupled && !body.elasticity.is_correspondence(),
+        "which 'coupled' in 'Models' knows with 'Model = correspondence' (section 'Elasticity') alone. Use that, or leave 'coupled' out.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
       refuse(
         body.elasticity.is_bond_based(),
@@ -119,8 +119,8 @@ namespace PeriDeal
         body.material.refuse(is_so, "Law", "found 'user', " + why);
       };
       refuse(
-        (!by_elements && !body.elasticity.is_correspondence()) || coupled,
-        "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' with 'Model = correspondence' (section 'Elasticity'), or of bonds, for 'Models = peridynamics' alone. Use these.");
+        (!by_elements || coupled) && !body.elasticity.is_correspondence(),
+        "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' and 'coupled' with 'Model = correspondence' (section 'Elasticity'), or of bonds, for 'Models = peridynamics' alone. Use these.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
       refuse_large_changes(body, refuse);
       refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
@@ -221,13 +221,15 @@ namespace PeriDeal
         coupled && body.coupling.scheme == CouplingScheme::exchange,
         "Scheme",
         "found 'exchange', whose bonds are pairs, but 'Model = correspondence' (section 'Elasticity') has families. Use 'blending'.");
-      refuse(coupled && kind != SolidLaw::linear,
-             "which 'Models = coupled' knows with 'Law = linear' (section 'Material'), found '" +
-               body.material.text("Law") +
-               "'. Use that, or 'Models = peridynamics' or 'finite elements'.");
+      const bool is_nonlinear = kind != SolidLaw::linear;
+      body.coupling.refuse(coupled && body.coupling.splices() && is_nonlinear,
+                           "Scheme",
+                           "'splice' is for 'Law = linear' (section 'Material'); use 'blending'.");
       refuse(
-        coupled && body.material.breaks(),
-        "whose bonds do not break beside elements: leave 'Fracture energy' and 'Critical stretch' (section 'Material') out, or use 'state-based', or 'Models = peridynamics'.");
+        coupled && is_nonlinear && kind != SolidLaw::plastic && kind != SolidLaw::user,
+        "which 'Models = coupled' knows with 'Law' = linear, plastic and user (section 'Material'), found '" +
+          body.material.text("Law") +
+          "'. Use one of these, or 'Models = peridynamics' or 'finite elements'.");
       body.peridynamics.refuse(
         coupled && body.peridynamics.completes_families(),
         "Surface correction",

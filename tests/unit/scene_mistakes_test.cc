@@ -302,8 +302,8 @@ Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Plane=strain
   {
     expect_said(elastic_and({"Models=peridynamics", "Elasticity/Model=correspondence"}), R"(
 Models=coupled & Coupling/Zone=everywhere => 'Scheme' | 'exchange' | 'Model = correspondence' | 'blending'
-Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Material/Law=plastic & Material/Yield stress=1 & Elasticity/Solver=newton => 'Model' | 'Models = coupled' | 'Law = linear' | 'plastic'
-Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Material/Fracture energy=1 => 'Model' | do not break | 'state-based'
+Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Material/Law=hyperelastic & Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | 'Models = coupled' | plastic and user | 'hyperelastic'
+Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=splice & Material/Law=plastic & Material/Yield stress=1 & Elasticity/Solver=newton => 'Scheme' | 'splice' | 'Law = linear' | 'blending'
 Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Peridynamics/Surface correction=fictitious nodes => 'Surface correction' | 'Model = correspondence' | 'auto'
 Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | small displacements | 'Law = hyperelastic' | 'Kinematics = linear'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 => 'Model' | 'Law = viscoelastic' | 'state-based'

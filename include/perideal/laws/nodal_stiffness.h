@@ -5,6 +5,8 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <perideal/base/smallest_eigenvalue.h>
+
 namespace PeriDeal
 {
   /*
@@ -48,6 +50,19 @@ namespace PeriDeal
   double soft_shear(const dealii::SymmetricTensor<4, dim> &C)
   {
     return 0.25 / mean_shear(invert(C));
+  }
+
+
+  /**
+   * Whether the bonds that are left of a node are enough for a gradient: too few would make it so
+   * stiff that steps are no longer stable. At a face of a crack half of M is left.
+   * @param M of these bonds @param weight q V of the body before
+   */
+  template <int dim>
+  bool bonds_hold(const dealii::SymmetricTensor<2, dim> &M, const double weight)
+  {
+    constexpr double few = 0.35;
+    return dim * smallest_eigenvalue(M) > few * weight;
   }
 
 

@@ -38,9 +38,9 @@ namespace PeriDeal
   template <int dim>
   std::vector<bool> NodalZone<dim>::reaching(const Coupling<dim> &coupling)
   {
-    const Families<dim>     &families = coupling.families();
-    const NodeFamilies<dim> &shares   = *coupling.node_families();
-    std::vector<bool>        result(families.nodes().n_owned());
+    const Families<dim>                        &families = coupling.families();
+    const NodeFamilies<dim>                    &shares   = *coupling.node_families();
+    std::vector<bool>                           result(families.nodes().n_owned());
     std::vector<typename Families<dim>::Member> members;
     for (unsigned int i = 0; i < result.size(); ++i)
       {
@@ -59,19 +59,26 @@ namespace PeriDeal
     : laws(coupling.families().nodes(), body)
     , ends(coupling.families())
     , rows(coupling.families(), laws, ends, body, reaching(coupling))
-    , nodal((laws.weighted.update_ghost_values(),
-             rows.find_springs(false,
-                               body.material.law.yields() ? Correspondence<dim>::n_history : 0),
-             coupling.families()),
-            ends,
-            rows,
-            laws,
-            thermal,
-            body)
+    , nodal(
+        (laws.weighted.update_ghost_values(),
+         rows.find_springs(false, body.material.law.yields() ? Correspondence<dim>::n_history : 0),
+         coupling.families()),
+        ends,
+        rows,
+        laws,
+        thermal,
+        body)
     , found(interleaved(*coupling.families().nodes().partitioner(), dim))
   {
+    const NodeFamilies<dim> &shares = *coupling.node_families();
     for (unsigned int i = 0; i < nodal.shapes.size(); ++i)
-      nodal.shapes.shares.push_back(coupling.node_families()->share_of(i));
+      {
+        nodal.shapes.set_share(i, shares.share_of(i));
+        rows.for_each(i, [&](const auto &bond) {
+          if (shares.share_of(i) > 0. || shares.share_of(bond.neighbor) > 0.)
+            n_in_zone += 0.5;
+        });
+      }
   }
 
 

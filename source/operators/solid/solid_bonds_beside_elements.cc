@@ -41,9 +41,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  SolidBondsBesideElements<dim>::SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling)
+  SolidBondsBesideElements<dim>::SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling,
+                                                          const BodyParameters<dim>     &body)
     : coupled(std::move(coupling))
-  {}
+  {
+    if (body.elasticity.is_correspondence() && body.material.law.kind != SolidLaw::linear)
+      own_nodal = std::make_unique<NodalZone<dim>>(*coupled, body);
+  }
 
 
   template <int dim>
@@ -98,7 +102,8 @@ namespace PeriDeal
           pattern.add_entries(dim * layout.local_to_global(i) + d, columns.begin(), columns.end());
       }
     const NodeFamilies<dim> *const families = coupled->node_families();
-    for (unsigned int i = 0; i < layout.locally_owned_size() && families != nullptr; ++i)
+    for (unsigned int i = 0; i < layout.locally_owned_size() && families != nullptr && !own_nodal;
+         ++i)
       families->visit_nodes_of_family(i, [&](const Family &family) {
         unknowns_of(family, columns);
         for (unsigned int a = 0; a < columns.size(); ++a)
@@ -159,7 +164,7 @@ namespace PeriDeal
                                                    Rows                           &rows) const
   {
     double n = 0.;
-    if (coupled->node_families() == nullptr)
+    if (coupled->node_families() == nullptr || own_nodal)
       return n;
     coupled->node_families()->visit_family(node, intact, {}, [&](const Family &family) {
       unknowns_of(family, rows.columns);

@@ -81,6 +81,16 @@ namespace PeriDeal
     void        visit_nodes_of_family(const unsigned int                         node,
                                       const std::function<void(const Family &)> &visit) const override;
     std::string fault_of(const unsigned int node) const override;
+    double      share_of(const unsigned int node) const override
+    {
+      return this->weighting.of_family(weights_now[node]);
+    }
+
+    double share_of(const Cell &cell) const override
+    {
+      return this->weighting.of_cell(weights_now.mean(cell));
+    }
+
     std::vector<dealii::types::boundary_id> mirrors() const override
     {
       return symmetry_sides;

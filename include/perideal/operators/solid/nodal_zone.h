@@ -55,7 +55,7 @@ namespace PeriDeal
     /** Of this process, those with other processes counted half. Not collective. */
     double n_bonds() const
     {
-      return rows.n_bonds;
+      return n_in_zone;
     }
 
     /** Not collective. */
@@ -74,6 +74,7 @@ namespace PeriDeal
     const BondEnds<dim>  ends;
     BondTable<dim>       rows;
     Correspondence<dim>  nodal;
+    double               n_in_zone = 0.;
     mutable Vector       found; // memory
   };
 } // namespace PeriDeal
