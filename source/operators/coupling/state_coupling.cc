@@ -27,7 +27,7 @@ namespace PeriDeal
         throw_if_narrow(own_families);
         extension.emplace(own_families, beyond_sides(body));
       }
-    if (lists_bonds(body))
+    if (lists_bonds(body) && !has_nodal_law(body))
       {
         // What FamilyZone looks at around the bonds of the corners of a cell, from its centre.
         const double horizon = own_families.weights().horizon(),

@@ -7,6 +7,7 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bounds/spectrum.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/parts/element_layout.h>
 #include <perideal/operators/parts/event_work.h>
 #include <perideal/operators/parts/lumped_mass.h>
@@ -104,7 +105,7 @@ namespace PeriDeal
         law = std::make_unique<Law>(Law{NodalLaw(body.material.law, layout), {}, layout, layout});
         cells.with_shear = law->nodal.relaxes();
       }
-    if (zone_bonds && lists_bonds(body))
+    if (zone_bonds && lists_bonds(body) && !has_nodal_law(body))
       {
         Coupling<dim> &zone = zone_bonds->coupling();
         breaking            = std::make_unique<ZoneBreaking<dim>>(

@@ -6,6 +6,7 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/instantiate.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/coupling/state_coupling.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid/zone_breaking.h>
@@ -45,7 +46,7 @@ namespace PeriDeal
                                                           const BodyParameters<dim>     &body)
     : coupled(std::move(coupling))
   {
-    if (body.elasticity.is_correspondence() && body.material.law.kind != SolidLaw::linear)
+    if (has_nodal_law(body))
       own_nodal = std::make_unique<NodalZone<dim>>(*coupled, body);
   }
 

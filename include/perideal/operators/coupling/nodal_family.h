@@ -18,6 +18,14 @@ namespace PeriDeal
   StressLaw::Tangent linear_stiffness(const BodyParameters<dim> &body, const dealii::Point<dim> &p);
 
 
+  /** Families have a law of stresses that is not linear: no matrix and no list has them. */
+  template <int dim>
+  bool has_nodal_law(const BodyParameters<dim> &body)
+  {
+    return body.elasticity.is_correspondence() && body.material.law.kind != SolidLaw::linear;
+  }
+
+
   /**
    * What the family of a node of correspondence (Correspondence) adds to a body of the linear law,
    * as a matrix: with the symbols there, s the thermal strain of the node, and b_k = M^-1 a_k, a_k
