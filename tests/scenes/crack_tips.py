@@ -12,7 +12,7 @@ import math
 import os
 import re
 
-from fracture import DISSIPATED, ENERGY, history
+from fracture import DISSIPATED, ENERGY, check_cantilever, history
 from resume import check_stopped, new_folder, tables_of
 from resume import run as run_in_folder
 from scene_test import PD, Comparison, check, check_less, run_parts, run_scene
@@ -65,6 +65,8 @@ def rest():
         ahead = [corners for corners, *_ in facets_of(run, model) if max(abs(p[1]) for p in corners) < 1e-12]
         table.add(f"{model}: length of the pieces between the arms", sum(math.dist(*corners) for corners in ahead), length, absolute=2.5 * cell)
         check(all(damage > 0 and since <= 1 for _, damage, since in facets_of(run, model)), f"{model}: pieces have damage and times")
+        if model == PD:
+            check_cantilever(table, run)
     table.show()
 
 

@@ -67,17 +67,29 @@ def eccentric():
     check_less(abs(energy["imbalance"]), 1e-3 * energy["work"], "balance of energy")
 
 
-def zone():
-    scene = "prm/fracture/softening_zone.prm"
+ZONE = "prm/fracture/softening_zone.prm"
+
+
+def beams_with_zones(cases):
     table = Comparison("beams with a zone whose bonds soften, largest force in kN")
-    cubes = "load: free, -8e-5*t ; left foot: 0, 0 ; right foot: free, 0"
-    for depth, curve, more in ((0.05, "exponential", {}), (0.05, "exponential", {"Peridynamics_Horizon_ratio": "4"}), (0.05, "linear", {}),
-                               (0.1, "exponential", {"Boundary conditions_Displacement": cubes})):
-        run = run_scene(scene, beam(depth, 30, odd=1, Material_Softening=curve, **more))
+    for depth, curve, more in cases:
+        run = run_scene(ZONE, beam(depth, 30, odd=1, Material_Softening=curve, **more))
         table.add(f"depth {depth}, {curve} {more}", largest_force(run, COUPLED), COHESIVE[depth, curve], relative=0.02)
         energy = run.model(COUPLED)["energy balance"]
         check_less(abs(energy["imbalance"]), 1e-4 * energy["work"], "balance of energy")
         check_less(abs(energy["released by joining"]), 1e-2 * energy["work"], "released by joining")
+    return table
+
+
+def zones():
+    """The others of the cohesive model."""
+    cubes = "load: free, -8e-5*t ; left foot: 0, 0 ; right foot: free, 0"
+    beams_with_zones(((0.05, "exponential", {"Peridynamics_Horizon_ratio": "4"}), (0.1, "exponential", {"Boundary conditions_Displacement": cubes}))).show()
+
+
+def zone():
+    scene = ZONE
+    table = beams_with_zones(((0.05, "exponential", {}), (0.05, "linear", {})))
     # Where sides are left as they are, both models have the same bonds around the notch.
     coarse = beam(0.05, 18, odd=1)
     first = run_scene(scene, coarse)
@@ -117,4 +129,4 @@ def refusals():
 
 
 if __name__ == "__main__":
-    run_parts(beams, eccentric, zone, resume, refusals)
+    run_parts(beams, eccentric, zone, resume, refusals, zones=zones)

@@ -475,12 +475,10 @@ def mistakes():
 
     def fails(name, overrides, words):
         for n in (1, 2):
-            settings = {"Elasticity/Plane": "strain", "Output directory": os.path.join(folder, "results"), **STEADY, **overrides}
-            status, stdout, stderr = run_perideal(["run", scene] + [word for entry, value in settings.items() for word in ("-s", f"{entry}={value}")], n, timeout=120)
-            check(status == 1, f"{name}, {n} process(es): exit status {status}\n{stdout[-500:]}")
-            check_one_message(stdout, stderr, words, f"{name}, {n} process(es)")
+            run = run_scene(scene, {"Elasticity/Plane": "strain", "Output directory": os.path.join(folder, "results"), **STEADY, **overrides}, ranks=n, expect_error=True)
+            check_one_message(run.stdout, run.stderr, words, f"{name}, {n} process(es)")
             if n == 1:
-                print(f"{name}: {stderr.strip()}\n")
+                print(f"{name}: {run.stderr.strip()}\n")
 
     for name, (text, states, words) in BROKEN.items():
         fails(name, user(write_file(f"{name}.c", text, folder), "1", states), ["'User law'", *words])
