@@ -475,23 +475,19 @@ namespace PeriDeal
         const auto  &family            = states->bonds().families.weights().members();
         const double thinnest          = states->bonds().corrections.thinnest;
         const bool   is_correspondence = scene.elasticity.is_correspondence(); // has its moduli
-        for (
-          const std::string &note :
-          {is_correspondence ? "" : note_on_few_bonds(scene, family),
-           is_correspondence ? "" : note_on_bending(scene),
-           spacing > 0. && !is_correspondence ?
-             note_on_thin_parts(thinnest / spacing,
-                                scene.horizon() / spacing,
-                                completes_at_surfaces<dim>(scene)) :
-             "",
-           std::string(
-             states->brittle() && is_correspondence ?
-               "bonds break at the stretches of 'Model = state-based', but a node of 'correspondence' has all of its stress until its bonds in some direction have lost 65 % of their weight: new cracks have cost 1.2 to 1.8 times what they cost there." :
-               ""),
-           states->brittle() && !scene.material.law.softens() ? note_on_trapping(scene, family) :
-                                                                "",
-           note_on_softening(),
-           note_on_critical_stretch()})
+        for (const std::string &note :
+             {is_correspondence ? "" : note_on_few_bonds(scene, family),
+              is_correspondence ? "" : note_on_bending(scene),
+              spacing > 0. && !is_correspondence ?
+                note_on_thin_parts(thinnest / spacing,
+                                   scene.horizon() / spacing,
+                                   completes_at_surfaces<dim>(scene)) :
+                "",
+              states->brittle() && is_correspondence ? note_on_nodal_cracks() : "",
+              states->brittle() && !scene.material.law.softens() ? note_on_trapping(scene, family) :
+                                                                   "",
+              note_on_softening(),
+              note_on_critical_stretch()})
           if (!note.empty())
             list.push_back(note);
         if (dim == 2 && has_forces_of_its_own() && scene.elasticity.plane == PlaneState::strain)

@@ -304,7 +304,8 @@ namespace PeriDeal
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }
         // Its fields would have to be mirrored, too.
-        if (model == ModelKind::coupled && scene.coupling.certificate &&
+        const bool has_matrix = !scene.elasticity.is_correspondence() || !elements->nonlinear();
+        if (model == ModelKind::coupled && scene.coupling.certificate && has_matrix &&
             elements->mirrors().empty())
           certify();
       }
@@ -550,12 +551,16 @@ namespace PeriDeal
         if (scene.material.law.kind == SolidLaw::formula)
           list.push_back(
             "stress in the results of 'coupled' is that of the linear law of its cells, in the zone, too, where bonds bear what 'Bond force' (section 'Material') says.");
+        const bool is_nodal = model == ModelKind::coupled && scene.elasticity.is_correspondence();
+        if (is_nodal && elements->brittle())
+          list.push_back(note_on_nodal_cracks());
         if (!this->certificate || this->certificate->fault().empty())
           return list;
         list.push_back(
           "'Scheme = " + scene.coupling.scheme_text() +
           "' in section 'Coupling': " + this->certificate->fault() +
-          ". A zone that stays more than two horizons clear of the sides, and a wider 'Overlap', make it less; 'exchange' has none of it.");
+          ". A zone that stays more than two horizons clear of the sides, and a wider 'Overlap', make it less" +
+          (is_nodal ? "." : "; 'exchange' has none of it."));
         return list;
       }
 

@@ -81,8 +81,8 @@ namespace PeriDeal
         body.material.refuse(is_so, "Law", "found 'plastic', " + why);
       };
       refuse(
-        coupled,
-        "which finite elements and peridynamics know, but 'coupled' in 'Models' does not. Leave it out.");
+        coupled && !body.elasticity.is_correspondence(),
+        "which 'coupled' in 'Models' knows with 'Model = correspondence' (section 'Elasticity') alone. Use that, or leave 'coupled' out.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
       refuse(
         body.elasticity.is_bond_based(),
@@ -120,8 +120,8 @@ namespace PeriDeal
         body.material.refuse(is_so, "Law", "found 'user', " + why);
       };
       refuse(
-        (!by_elements && !body.elasticity.is_correspondence()) || coupled,
-        "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' with 'Model = correspondence' (section 'Elasticity'), or of bonds, for 'Models = peridynamics' alone. Use these.");
+        (!by_elements || coupled) && !body.elasticity.is_correspondence(),
+        "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' and 'coupled' with 'Model = correspondence' (section 'Elasticity'), or of bonds, for 'Models = peridynamics' alone. Use these.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
       refuse_large_changes(body, refuse);
       refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
@@ -192,11 +192,11 @@ namespace PeriDeal
         body.material.refuse(is_so, "Young moduli", why);
       };
       refuse(
-        (!by_elements && !body.elasticity.is_correspondence()) || coupled,
-        "makes the body orthotropic, which is for 'Models = finite elements': bonds have two moduli. Use that, or 'Model = correspondence' (section 'Elasticity') with 'Models = peridynamics', or give "
+        (!by_elements || coupled) && !body.elasticity.is_correspondence(),
+        "makes the body orthotropic, which is for 'Models = finite elements': bonds have two moduli. Use that, or 'Model = correspondence' (section 'Elasticity'), or give "
         "'Young modulus' and 'Poisson ratio'.");
       refuse(
-        !by_elements && body.material.breaks(),
+        (!by_elements || coupled) && body.material.breaks(),
         "makes the body orthotropic, whose bonds do not break: leave 'Fracture energy' and 'Critical stretch' out.");
       refuse(
         body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
@@ -218,8 +218,23 @@ namespace PeriDeal
         body.elasticity.refuse(is_so, "Model", "found 'correspondence', " + why);
       };
       const SolidLaw kind = body.material.law.kind;
-      refuse(coupled,
-             "which is for 'Models = peridynamics', not for 'coupled'. Use 'state-based'.");
+      body.coupling.refuse(
+        coupled && body.coupling.scheme == CouplingScheme::exchange,
+        "Scheme",
+        "found 'exchange', whose bonds are pairs, but 'Model = correspondence' (section 'Elasticity') has families. Use 'blending'.");
+      const bool is_nonlinear = kind != SolidLaw::linear;
+      body.coupling.refuse(coupled && body.coupling.splices() && is_nonlinear,
+                           "Scheme",
+                           "'splice' is for 'Law = linear' (section 'Material'); use 'blending'.");
+      refuse(
+        coupled && is_nonlinear && kind != SolidLaw::plastic && kind != SolidLaw::user,
+        "which 'Models = coupled' knows with 'Law' = linear, plastic and user (section 'Material'), found '" +
+          body.material.text("Law") +
+          "'. Use one of these, or 'Models = peridynamics' or 'finite elements'.");
+      body.peridynamics.refuse(
+        coupled && body.peridynamics.completes_families(),
+        "Surface correction",
+        "found 'fictitious nodes', but families of 'Model = correspondence' (section 'Elasticity') end at the surface beside elements. Use 'auto' or 'none'.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3. Use 'state-based'.");
       refuse(
         body.elasticity.has_full_kinematics() && kind != SolidLaw::hyperelastic,

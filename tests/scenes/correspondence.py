@@ -7,13 +7,15 @@
     correspondence.py flow        limit pressure of a ring, a plate that yields on several processes
     correspondence.py motion      speed of waves, energy, processes
     correspondence.py breaking    bodies whose bonds break, at rest and in motion
+    correspondence.py blending    beside finite elements of the same law: laminae, cracks, bodies that yield, waves, bonds that break
 
 Bounds that follow from no theory are about 1.5 times the gap that was measured; the comment beside them gives it.
 """
 
 import math
 
-from scene_test import FE, PD, Comparison, check, run_parts, run_scene, scene_text
+import blended_breaking
+from scene_test import COUPLED, FE, PD, Comparison, check, run_parts, run_scene, scene_text
 from yielding import PLATE, RING, ring_mesh, share_lost
 from yielding import STRUCK as YIELDING
 
@@ -21,8 +23,10 @@ NODAL = {"Elasticity/Model": "correspondence", "Peridynamics/Horizon ratio": "2"
 QUIET = {"Output/Fields": "none"}
 TIGHT = {**QUIET, "Solver/Tolerance": "1e-12"}
 LAMINA = "prm/elasticity/correspondence_lamina.prm"
+LAMINA_CUT = "prm/elasticity/blended_lamina.prm"
 STRUCK = "prm/fracture/kalthoff_winkler.prm"
 TORN = "prm/fracture/torn_strip.prm"
+USER = "prm/elasticity/user_law.prm"
 
 SQUARE = scene_text("""
 Dimension = 2
@@ -39,19 +43,24 @@ Output/Fields = none
 """)
 
 
+def pulled_lamina(angle):
+    """A square that is free at three sides, its fibres at an angle: entries, and 1/E along x."""
+    E1, E2, G12, nu12 = 150, 10, 5, 0.3
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    # Jones, Mechanics of Composite Materials, 2.8: S_xx, S_xy, S_xs
+    along = c**4 / E1 + s**4 / E2 + (1 / G12 - 2 * nu12 / E1) * c**2 * s**2
+    across = (1 / E1 + 1 / E2 - 1 / G12) * c**2 * s**2 - nu12 / E1 * (c**4 + s**4)
+    shear = (2 / E1 + 2 * nu12 / E1 - 1 / G12) * s * c**3 - (2 / E2 + 2 * nu12 / E1 - 1 / G12) * s**3 * c
+    return {"Material/Young moduli": "150, 10", "Material/Shear moduli": "5", "Material/Poisson ratios": "0.3", "Material/Material angle": str(angle),
+            "Boundary conditions/Displacement": f"left: {shear / 2}*y, {across}*y", "Boundary conditions/Traction": "right: 1, 0", "Output/Probes": "0.25,0.5 ; 0.75,0.5"}, along
+
+
 def lamina():
     """1/E along x of a square that is free at three sides, by the angle of its fibres."""
     table = Comparison("a lamina that is pulled off its axes")
-    E1, E2, G12, nu12 = 150, 10, 5, 0.3
     for angle in (0, 15, 30, 45, 90):
-        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-        # Jones, Mechanics of Composite Materials, 2.8: S_xx, S_xy, S_xs
-        along = c**4 / E1 + s**4 / E2 + (1 / G12 - 2 * nu12 / E1) * c**2 * s**2
-        across = (1 / E1 + 1 / E2 - 1 / G12) * c**2 * s**2 - nu12 / E1 * (c**4 + s**4)
-        shear = (2 / E1 + 2 * nu12 / E1 - 1 / G12) * s * c**3 - (2 / E2 + 2 * nu12 / E1 - 1 / G12) * s**3 * c
-        run = run_scene(SQUARE, {"Material/Young moduli": "150, 10", "Material/Shear moduli": "5", "Material/Poisson ratios": "0.3", "Material/Material angle": str(angle),
-                                 "Boundary conditions/Displacement": f"left: {shear / 2}*y, {across}*y", "Boundary conditions/Traction": "right: 1, 0", "Output/Probes": "0.25,0.5 ; 0.75,0.5"})
-        left, right = run.rows(PD)
+        settings, along = pulled_lamina(angle)
+        left, right = run_scene(SQUARE, settings).rows(PD)
         table.add(f"{angle} degrees: 1/E", (right["ux"] - left["ux"]) / 0.5, along, relative=0.003)  # measured: 0.2 %
     run = run_scene(LAMINA, QUIET)
     for model in (FE, PD):
@@ -165,8 +174,64 @@ def breaking():
     table.add_limit("struck plate: drift of energy over what is released", abs(drift / released), 1e-9)
     table.add_limit("struck plate: what is missing of it", abs(imbalance / released), 0.02)
     table.add("broken bonds on 2 processes", runs[2].total("broken bonds", PD), runs[1].total("broken bonds", PD), absolute=0)
+    # In a zone beside elements.
+    coarse = {**blended_breaking.COARSE, **NODAL, "Domain/Cells": "21, 31", "Time/Time step": "0.05", "Time/End time": "0.6", "Elasticity/Breaking": "at rest", "Coupling/Certificate": "false"}
+    alone, everywhere, follow = (run_scene(blended_breaking.SCENE, {**coarse, **more}) for more in (blended_breaking.ALONE, {"Coupling/Zone": "everywhere"}, {}))
+    broken, dissipated = "broken bonds", "energy dissipated"
+    check(alone.total(broken, PD) > 100, f"bonds break: {alone.total(broken, PD)}")
+    table.add("zone everywhere: broken bonds", everywhere.total(broken, COUPLED), alone.total(broken, PD), absolute=0)
+    table.add("zone everywhere: energy dissipated", everywhere.total(dissipated, COUPLED), alone.total(dissipated, PD), relative=1e-7)
+    table.add("zone that follows: broken bonds", follow.total(broken, COUPLED), alone.total(broken, PD), relative=0.02)
+    table.add("zone that follows: energy dissipated", follow.total(dissipated, COUPLED), alone.total(dissipated, PD), relative=0.02)
+    table.show()
+
+
+BLENDED = {"Models": COUPLED, "Coupling/Scheme": "blending", "Coupling/Overlap": "1", "Coupling/Certificate": "false"}
+DISC = {**BLENDED, "Coupling/Zone": "0.25 - sqrt((x - 0.5)^2 + (y - 0.5)^2)"}
+RIM = {**BLENDED, **NODAL, "Domain/Nodes": "vertices", "Coupling/Zone": "1.15 - sqrt(x^2 + y^2)"}
+
+
+def farthest(run, other, models):
+    """Of displacements at the probes, over the largest."""
+    pairs = list(zip(run.rows(models[0]), other.rows(models[1])))
+    return max(math.hypot(a["ux"] - b["ux"], a["uy"] - b["uy"]) for a, b in pairs) / max(math.hypot(b["ux"], b["uy"]) for _, b in pairs)
+
+
+def blending():
+    table = Comparison("correspondence blended with finite elements")
+    settings, along = pulled_lamina(30)
+    left, right = run_scene(SQUARE, {**settings, **DISC}).rows(COUPLED)
+    table.add("lamina at 30 degrees: 1/E through the zone", (right["ux"] - left["ux"]) / 0.5, along, relative=0.005)  # measured: 0.31 %
+    run = run_scene(LAMINA_CUT, QUIET)
+    opening = {}
+    for model in (PD, COUPLED):
+        above, below = run.rows(model)[:2]
+        opening[model] = above["ux"] - below["ux"]
+    table.add(f"{LAMINA_CUT}: opening, over that of peridynamics", opening[COUPLED] / opening[PD], 1, absolute=0.02)  # measured: 1.3 %
+    blended, ordinary = (run_scene(SQUARE, {**CONSOLE, **DISC, "Elasticity/Model": model}) for model in ("correspondence", "state-based"))
+    table.add_limit("console: from the ordinary solid, blended", farthest(blended, ordinary, (COUPLED, COUPLED)), 1.2e-3)  # measured: 7.8e-4
+    table.add_limit("console: from elements", farthest(blended, run_scene(SQUARE, {**CONSOLE, "Models": FE}), (COUPLED, FE)), 8e-4)  # measured: 5.1e-4
+
+    # On several processes: a bar that is struck, whose wave passes the zone; a plate that yields around its hole.
+    runs = [run_scene(SQUARE, {**BAR, **BLENDED, "Coupling/Zone": "0.3 - abs(x - 1.5)"}, ranks=ranks) for ranks in (1, 2, 4)]
+    first, second = (row["ux"] for row in runs[0].rows(COUPLED, time=2.5))
+    table.add("speed of the wave through the zone", 0.01 / (first - second), 1, relative=0.005)  # measured: 0.2 %
+    table.add_limit("drift of energy over work", abs(runs[0].total("energy drift", COUPLED) / runs[0].total("work of loads and supports", COUPLED)), 1e-9)
+    for run, ranks in zip(runs[1:], (2, 4)):
+        for row, expected in zip(run.rows(COUPLED, time=2.5), runs[0].rows(COUPLED, time=2.5)):
+            table.add(f"ux at x = {row['x']}, {ranks} processes", row["ux"], expected["ux"], relative=1e-12)
+    yielding = {**QUIET, "Solver/Tolerance": "1e-11", "Domain/Cells": "20, 20", "Time/Time step": "0.1", "Time/End time": "1"}
+    runs = [run_scene(PLATE, {**yielding, **RIM}, ranks=ranks) for ranks in (1, 2, 4)]
+    force = "force on right in x"
+    table.add("plate that yields: force, against elements", runs[0].total(force, COUPLED), run_scene(PLATE, {**yielding, "Models": FE}).total(force, FE), relative=0.018)  # measured: 1.1 %
+    for run, ranks in zip(runs[1:], (2, 4)):
+        for quantity in (force, "strain energy", "energy dissipated by the law"):
+            table.add(f"{quantity}, {ranks} processes", run.total(quantity, COUPLED), runs[0].total(quantity, COUPLED), relative=1e-9)
+    bar = {**QUIET, **BLENDED, **NODAL, "Solver/Tolerance": "1e-10", "Time/End time": "3"}
+    run = run_scene(USER, {**bar, "Coupling/Zone": "0.4 - abs(x - 1)"})
+    table.add("bar with a law of a user: force, against elements", run.total(force, COUPLED), run_scene(USER, {**bar, "Models": FE}).total(force, FE), relative=1e-3)
     table.show()
 
 
 if __name__ == "__main__":
-    run_parts(lamina, bodies, flow, motion, breaking)
+    run_parts(lamina, bodies, flow, motion, breaking, blending)

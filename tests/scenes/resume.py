@@ -46,6 +46,7 @@ YIELDING_BONDS = {"Elasticity/Solver": "dynamics", "Material/Density": "1.0", "B
 RUBBER = {"Domain/Cells": "24, 6", "Elasticity/Solver": "dynamics", "Material/Density": "1.0", "Boundary conditions/Displacement": "bottom: 0, 0", "Initial and source/Initial displacement": "0, 0.1*y", "Time/Time step": "auto",
           "Time/End time": "1", "Output/Write at": "0.5"}
 NODAL = {"Elasticity/Model": "correspondence", "Peridynamics/Horizon ratio": "2", "Peridynamics/Kernel exponent": "auto"}
+BLENDED = {**NODAL, "Models": "coupled", "Domain/Nodes": "vertices", "Coupling/Scheme": "blending", "Coupling/Zone": "1.15 - sqrt(x^2 + y^2)", "Coupling/Overlap": "1"}
 SCENES = {
     "heat": [("heat/convection.prm", {**HEAT, "Time/Stepper": stepper}, tolerance)
              for stepper, tolerance in (("euler", 0), ("rk4", 0), ("rkc2", 0), ("chebyshev", 0), ("crank nicolson", IMPLICIT),
@@ -57,14 +58,15 @@ SCENES = {
     "motion": [("fracture/branching_crack.prm", {"Domain/Cells": "60, 24"}, 0), ("fracture/struck_pieces.prm", {}, 0),
                ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", "Elasticity/Plane": "strain", "Material/Law": "viscoelastic", "Material/Relaxation": "0.5, 1e-5"}, 0),
                ("fracture/branching_crack.prm", {"Domain/Cells": "61, 25", "Domain/Nodes": "cell centers", "Elasticity/Kinematics": "full"}, 0),
-               ("elasticity/yielding_plate.prm", YIELDING, 0), ("elasticity/yielding_plate.prm", {**YIELDING, **NODAL}, 0), ("elasticity/user_law.prm", STRUCK, 0), ("elasticity/hyperelastic_block.prm", RUBBER, 0),
+               ("elasticity/yielding_plate.prm", YIELDING, 0), ("elasticity/yielding_plate.prm", {**YIELDING, **NODAL}, 0), ("elasticity/yielding_plate.prm", {**YIELDING, **BLENDED}, IMPLICIT), ("elasticity/user_law.prm", STRUCK, 0), ("elasticity/hyperelastic_block.prm", RUBBER, 0),
                ("elasticity/user_law.prm", {**STRUCK, **NODAL, "Models": "peridynamics"}, 0), ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", **NODAL}, 0),
                ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", "Material/Law": "softening", "Material/Tensile strength": "3e7"}, IMPLICIT), # what is left of a bond is a product of shares
                ("elasticity/user_bonds.prm", YIELDING_BONDS, 0),
                ("fracture/colliding_bars.prm", {}, 0), ("fracture/branching_crack.prm", {"Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}, IMPLICIT),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
     "loading": [("elasticity/yielding_ring.prm", {"Domain/Refinements": "2", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/hyperelastic_block.prm", {"Domain/Cells": "24, 6", "Solver/Tolerance": "1e-13", "Output/Write at": "1"}, IMPLICIT), ("elasticity/user_law.prm", NOTCHED, IMPLICIT), ("elasticity/user_law.prm", {**NOTCHED, **NODAL, "Models": "peridynamics"}, IMPLICIT), ("elasticity/creeping_plate.prm", {"Domain/Cells": "16, 8", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/yielding_plate.prm", {"Domain/Cells": "16, 16", "Solver/Tolerance": "1e-12"}, IMPLICIT),
-                ("elasticity/yielding_plate.prm", {"Domain/Cells": "12, 12", "Time/Time step": "0.1", "Solver/Tolerance": "1e-12", **NODAL}, IMPLICIT), ("fracture/following_zone.prm", {"Domain/Cells": "17, 25", "Solver/Tolerance": "1e-13"}, IMPLICIT),
+                ("elasticity/yielding_plate.prm", {"Domain/Cells": "12, 12", "Time/Time step": "0.1", "Solver/Tolerance": "1e-12", **NODAL}, IMPLICIT),
+                ("elasticity/yielding_plate.prm", {"Domain/Cells": "12, 12", "Time/Time step": "0.1", "Time/End time": "1", "Output/Write at": "0.5", "Solver/Tolerance": "1e-12", **BLENDED}, IMPLICIT), ("fracture/following_zone.prm", {"Domain/Cells": "17, 25", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("fracture/softening_zone.prm", {"Domain/Lower corner": "-0.0925, 0", "Domain/Upper corner": "0.0925, 0.05", "Domain/Cells": "37, 10", "Solver/Tolerance": "1e-13", "Time/End time": "0.6",
                                                  "Boundary conditions/Parts": "load: top if abs(x) < 0.0055 ; left foot: bottom if abs(x + 0.0625) < 0.00275 ; right foot: bottom if abs(x - 0.0625) < 0.00275"}, 10 * IMPLICIT), # what softens lets round-off grow
                 ("fracture/snap_back.prm", {"Output/Probes": "", "Solver/Tolerance": "1e-13", "Time/End time": "0.7"}, 10 * IMPLICIT),

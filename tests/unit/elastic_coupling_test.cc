@@ -123,6 +123,22 @@ namespace
 {
   const std::vector<std::string> schemes{"splice", "blending"};
 
+  const Settings nodal{{"Elasticity/Model", "correspondence"},
+                       {"Peridynamics/Horizon ratio", "2"},
+                       {"Peridynamics/Kernel exponent", "auto"},
+                       {"Peridynamics/Operator form", "stored"}};
+
+  /** Without the moduli of box(). */
+  Settings nodal_orthotropic(const unsigned int dim)
+  {
+    return nodal + Settings{{"Material/Young modulus", ""},
+                            {"Material/Poisson ratio", ""},
+                            {"Material/Young moduli", "15, 2, 3"},
+                            {"Material/Shear moduli", "1, 0.8, 0.7"},
+                            {"Material/Poisson ratios", "0.3, 0.25, 0.2"},
+                            {"Material/Material angle", dim == 3 ? "20, 30, 40" : "25"}};
+  }
+
 
   /**
    * A block in the middle, with its overlap of half a horizon more than two horizons of 0.2 clear
@@ -196,7 +212,35 @@ TEST(StateCouplings, everywhere_is_peridynamics)
                               {"Material/Phases/Regions", "stiff: x > 0.7"},
                               {"Material/Phases/Young modulus", "stiff: 30"}});
       expect_peridynamics<3>(scheme);
+      expect_peridynamics<2>(scheme,
+                             nodal + Settings{{"Cracks/Segments", "0.43, 0.55 ; 1.01, 0.75"},
+                                              {"Elasticity/Contact", "false"}});
+      expect_peridynamics<2>(scheme, nodal + Settings{{"Elasticity/Plane", "strain"}});
+      expect_peridynamics<3>(scheme, nodal);
     }
+}
+
+
+TEST(StateCouplings, orthotropic_bodies_everywhere_are_correspondence)
+{
+  const auto check = [](const auto &coupled, const auto &alone, const auto &field) {
+    const Vector x = coupled.values(field), y = coupled.product(x),
+                 z = alone.product(alone.values(field));
+    EXPECT_LE(largest_difference(y, z), 1e-13 * y.linfty_norm());
+    EXPECT_NEAR(coupled.op().energy(x) / alone.op().energy(alone.values(field)), 1., 1e-12);
+  };
+  const Settings blended{{"Coupling/Scheme", "blending"}};
+  for (const std::string plane : {"stress", "strain"})
+    {
+      const Settings plate = zoned<2>("everywhere", 0., plane) + nodal_orthotropic(2) + blended;
+      check(Body<2>(plate, ModelKind::coupled),
+            Body<2>(plate, ModelKind::peridynamics),
+            bumpy_vector<2>);
+    }
+  const Settings block_3d = zoned<3>("everywhere", 0.) + nodal_orthotropic(3) + blended;
+  check(Body<3>(block_3d, ModelKind::coupled),
+        Body<3>(block_3d, ModelKind::peridynamics),
+        bumpy_vector<3>);
 }
 
 
@@ -210,6 +254,10 @@ TEST(StateCouplings, splice_is_exact_for_linear_fields_but_does_not_balance)
       EXPECT_LT(defect(plate, linear_field<2>), 1e-13);
       EXPECT_LT(defect(Body<3>(block<3>("splice", overlap), ModelKind::coupled), linear_field<3>),
                 1e-13);
+      EXPECT_LT(
+        defect(Body<2>(block<2>("splice", overlap) + nodal_orthotropic(2), ModelKind::coupled),
+               linear_field<2>),
+        1e-13);
       EXPECT_FALSE(plate.elements->symmetric());
       EXPECT_GT(asymmetry(plate), 1e-3);
       EXPECT_GT(unbalanced(plate), 1e-4);
@@ -230,10 +278,32 @@ TEST(StateCouplings, blending_balances_but_is_not_exact)
       EXPECT_GT(linear, 1e-2);
       EXPECT_LT(linear, 0.3);
     }
-  const Body<3> block_3d(block<3>("blending", "0.5"), ModelKind::coupled);
-  EXPECT_LT(asymmetry(block_3d), 1e-14);
-  EXPECT_LT(unbalanced(block_3d), 1e-14);
-  EXPECT_GE(block_3d.elements->lowest_remainder(), -1e-14);
+  for (const Settings &more : {Settings{}, nodal, nodal_orthotropic(3)})
+    {
+      const Body<3> block_3d(block<3>("blending", "0.5") + more, ModelKind::coupled);
+      EXPECT_LT(asymmetry(block_3d), 1e-14);
+      EXPECT_LT(unbalanced(block_3d), 1e-14);
+      EXPECT_GE(block_3d.elements->lowest_remainder(), -1e-14);
+    }
+}
+
+
+/** A uniform strain has its energy at all nodes and points, and the weights of both are one. */
+TEST(StateCouplings, blended_correspondence_has_the_energy_of_uniform_strains)
+{
+  const auto check = [](const auto &blended, const auto &elements, const auto &field) {
+    const double energy = elements.op().energy(elements.values(field));
+    EXPECT_NEAR(blended.op().energy(blended.values(field)) / energy, 1., 1e-13);
+    EXPECT_LT(defect(blended, field), 0.1);
+  };
+  for (const std::string overlap : {"0.5", "1"})
+    for (const Settings &more : {nodal, nodal_orthotropic(2)})
+      {
+        const Settings plate = block<2>("blending", overlap) + more;
+        check(Body<2>(plate, ModelKind::coupled),
+              Body<2>(plate, ModelKind::finite_elements),
+              linear_field<2>);
+      }
 }
 
 
@@ -264,9 +334,11 @@ TEST(StateCouplings, free_thermal_expansion)
     {
       const Settings warm{{"Material/Thermal expansion", "0.001"},
                           {"Elasticity/Temperature change", "10"}};
-      const Body<2>  body(block<2>(scheme, "0.5") + warm, ModelKind::coupled);
       SCOPED_TRACE(scheme);
-      expect_free_expansion(body, 0.01, 1e-14);
+      for (const Settings &more : {Settings{}, nodal})
+        expect_free_expansion(Body<2>(block<2>(scheme, "0.5") + warm + more, ModelKind::coupled),
+                              0.01,
+                              1e-14);
     }
 }
 
@@ -278,6 +350,8 @@ TEST(StateCouplings, same_on_all_processes)
     {
       const Settings with{{"Coupling/Scheme", scheme}, {"Coupling/Overlap", "1"}};
       expect_same_on_all_processes(zoned<2>("cracks: 1", 0.3) + crack + with);
+      expect_same_on_all_processes(zoned<2>("cracks: 1", 0.3) + crack + with +
+                                   nodal_orthotropic(2));
       // Rows that reach far beyond the halo.
       expect_same_on_all_processes(zoned<2>("everywhere", 0.3) + crack + with +
                                    Settings{{"Peridynamics/Horizon ratio", "5"}});

@@ -305,7 +305,10 @@ Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Plane=strain
   TEST(SceneMistakes, of_correspondence)
   {
     expect_said(elastic_and({"Models=peridynamics", "Elasticity/Model=correspondence"}), R"(
-Models=coupled & Coupling/Zone=everywhere => 'Model' | 'correspondence' | 'coupled' | 'state-based'
+Models=coupled & Coupling/Zone=everywhere => 'Scheme' | 'exchange' | 'Model = correspondence' | 'blending'
+Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Material/Law=hyperelastic & Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | 'Models = coupled' | plastic and user | 'hyperelastic'
+Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=splice & Material/Law=plastic & Material/Yield stress=1 & Elasticity/Solver=newton => 'Scheme' | 'splice' | 'Law = linear' | 'blending'
+Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Peridynamics/Surface correction=fictitious nodes => 'Surface correction' | 'Model = correspondence' | 'auto'
 Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | small displacements | 'Law = hyperelastic' | 'Kinematics = linear'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 => 'Model' | 'Law = viscoelastic' | 'state-based'
 Material/Law=formula & Material/Bond force=s & Elasticity/Solver=newton => 'Model' | 'Law = formula' | 'state-based'

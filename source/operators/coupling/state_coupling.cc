@@ -4,6 +4,7 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/smallest_eigenvalue.h>
 #include <perideal/operators/coupling/coupling.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/coupling/state_coupling.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@ namespace PeriDeal
                                     const Zone<dim>           &zone,
                                     const CouplingScheme       scheme)
     : WeightedCoupling<dim>(nodes, body, zone, scheme)
+    , nodal(body.elasticity.is_correspondence() ? &body : nullptr)
   {
     if (body.peridynamics.completes_families())
       {
@@ -25,7 +27,7 @@ namespace PeriDeal
         throw_if_narrow(own_families);
         extension.emplace(own_families, beyond_sides(body));
       }
-    if (lists_bonds(body))
+    if (lists_bonds(body) && !has_nodal_law(body))
       {
         // What FamilyZone looks at around the bonds of the corners of a cell, from its centre.
         const double horizon = own_families.weights().horizon(),
@@ -38,7 +40,7 @@ namespace PeriDeal
     find_nodes_that_act();
     laws.resize(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      if (acts[i])
+      if (acts[i] && nodal == nullptr)
         laws[i] = state_law(body.material.moduli(nodes.position(i)), dim, body.elasticity.plane);
   }
 
@@ -92,6 +94,13 @@ namespace PeriDeal
     Family                    family;
     if (!find_family(weights_now, node, intact, strain, family.nodes, list))
       return;
+    if (nodal != nullptr)
+      {
+        add_nodal(list, strain, family);
+        scale_rows(family);
+        visit(family);
+        return;
+      }
     double q = 0.;
     for (const BondOfFamily &bond : list)
       q += bond.square / own_families.nodes().volume(node);
@@ -175,7 +184,8 @@ namespace PeriDeal
   template <int dim>
   std::string StateCoupling<dim>::fault_of(const unsigned int node) const
   {
-    if (dim == 1 || weights_now[node] < 1.)
+    // An energy of correspondence needs a gradient, whatever its weight.
+    if (dim == 1 || weights_now[node] == 0. || (nodal == nullptr && weights_now[node] < 1.))
       return {};
     std::vector<BondOfFamily> list;
     std::vector<unsigned int> nodes{node};
@@ -327,6 +337,30 @@ namespace PeriDeal
         thermal += bond.square * bond.strain;
       }
     add_square(sum, factor, thermal, family);
+  }
+
+
+  template <int dim>
+  void StateCoupling<dim>::add_nodal(const std::vector<BondOfFamily> &list,
+                                     const ThermalStrain             &strain,
+                                     Family                          &family) const
+  {
+    const Nodes<dim>                            &nodes = own_families.nodes();
+    const unsigned int                           node  = family.nodes[0];
+    std::vector<typename NodalFamily<dim>::Bond> bonds;
+    set_size(family);
+    for (const BondOfFamily &bond : list)
+      {
+        const Tensor<1, dim> &moment = bond.parts[1].moment;
+        bonds.push_back({moment, moment.norm_square() / bond.square});
+        family.n_bonds += bond.count;
+      }
+    NodalFamily<dim>(*nodal, nodes.position(node))
+      .add_to(family,
+              bonds,
+              nodes.volume(node),
+              strain ? strain(node) : 0.,
+              this->weighting.of_family(weights_now[node]));
   }
 
 

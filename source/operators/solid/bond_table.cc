@@ -80,13 +80,14 @@ namespace PeriDeal
   BondTable<dim>::BondTable(const Families<dim>       &families,
                             NodeLaws<dim>             &laws,
                             const BondEnds<dim>       &ends,
-                            const BodyParameters<dim> &scene)
+                            const BodyParameters<dim> &scene,
+                            const std::vector<bool>   &of_nodes)
     : families(families)
     , laws(laws)
     , ends(ends)
   {
     const Nodes<dim> &nodes     = families.nodes();
-    const bool        leave_out = may_leave_out_bonds(families, scene);
+    const bool        leave_out = of_nodes.empty() && may_leave_out_bonds(families, scene);
     Family            family;
     std::string       message;
     std::vector<bool> changing;
@@ -94,7 +95,7 @@ namespace PeriDeal
     if (nodes.lattice())
       for (const FamilyMember<dim> &member : families.weights().members())
         complete_weighted += nodes.lattice()->cell_volume() * member.weight * member.r * member.r;
-    if (!leave_out && families.neighbors().has_unique_sites())
+    if (!leave_out && of_nodes.empty() && families.neighbors().has_unique_sites())
       {
         // More than enough, in one go: what is not written to takes no memory.
         const std::size_t n = families.weights().members().size() * nodes.n_owned();
@@ -110,6 +111,12 @@ namespace PeriDeal
       }
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
+        if (!of_nodes.empty() && !of_nodes[i])
+          {
+            add_row(i, {});
+            laws.weighted.local_element(i) = complete_weighted;
+            continue;
+          }
         const bool complete = leave_out && has_complete_family(families, i);
         bool       stored   = !leave_out;
         if (complete && !families.near_crack(i) && !changing[i])

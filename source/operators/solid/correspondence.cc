@@ -217,9 +217,10 @@ namespace PeriDeal
     trial.ratios[i]              = flow.ratio;
     const bool           flows   = stresses.flows();
     double *const        numbers = trial.numbers.begin() + (flows ? n_of_flow : n_numbers) * i;
-    const double         c       = shape.stabilizer * flow.ratio;
+    const double         c       = shape.share * shape.stabilizer * flow.ratio;
     const Tensor<2, dim> inverse(shape.inverse), pull = stresses.pull(i, trial.slopes[i]);
-    write(numbers + at_force, Tensor<2, dim>(volume * (pull * inverse) - c * trial.slopes[i]));
+    write(numbers + at_force,
+          Tensor<2, dim>(shape.share * volume * (pull * inverse) - c * trial.slopes[i]));
     numbers[at_stiffness] = c;
     if (!flows)
       return;
@@ -313,7 +314,7 @@ namespace PeriDeal
     for_each_family(bonds,
                     shapes.size(),
                     [&](const unsigned int i, const Span &inside, const Span &outside) {
-                      if (!bonds.is_on_lattice(i))
+                      if (!bonds.is_on_lattice(i) && shapes[i].share > 0.)
                         find_at(values, i, inside, outside);
                     });
     u.set_ghost_state(false);
@@ -416,8 +417,8 @@ namespace PeriDeal
               squares += w * (change_at(j) - trial.slopes[i] * moment / w).norm_square();
           });
         settle(i, squares, squares);
-        sum +=
-          families.nodes().volume(i) * stresses[i].stored + 0.5 * shapes[i].stabilizer * squares;
+        sum += shapes[i].share * (families.nodes().volume(i) * stresses[i].stored +
+                                  0.5 * shapes[i].stabilizer * squares);
       }
     u.set_ghost_state(false);
     stresses.throw_faults();
@@ -431,7 +432,7 @@ namespace PeriDeal
     double sum = 0.;
     for (unsigned int i = 0; i < shapes.size(); ++i)
       {
-        const double c = shapes[i].stabilizer, r = trial.ratios[i];
+        const double share = shapes[i].share, c = share * shapes[i].stabilizer, r = trial.ratios[i];
         double       of_point = stresses[i].stored;
         if (lattice.sums)
           {
@@ -440,7 +441,7 @@ namespace PeriDeal
           }
         else
           sum += 0.5 * c * r * r * trial.squares[i];
-        sum += families.nodes().volume(i) * of_point;
+        sum += share * families.nodes().volume(i) * of_point;
       }
     for (unsigned int k = 0; lattice.sums && k < u.locally_owned_size(); ++k)
       sum += 0.5 * minus_F.local_element(k) * u.local_element(k);
@@ -470,7 +471,7 @@ namespace PeriDeal
       find(u);
     double sum = 0.;
     for (unsigned int i = 0; i < shapes.size(); ++i)
-      sum += families.nodes().volume(i) * stresses[i].dissipated;
+      sum += shapes[i].share * families.nodes().volume(i) * stresses[i].dissipated;
     return Utilities::MPI::sum(sum, families.nodes().communicator());
   }
 
@@ -478,13 +479,10 @@ namespace PeriDeal
   template <int dim>
   double Correspondence<dim>::accept(const Vector &u, const double t)
   {
-    if (is_linear())
-      return 0.;
     if (stresses.is_full()) // which remembers and dissipates nothing
-      {
-        stresses.accept(t, false, false);
-        return 0.;
-      }
+      stresses.accept(t, false, false);
+    if (is_linear() || stresses.is_full())
+      return 0.;
     if (!knows(u) || !trial.has_forces || stresses.now() != t)
       {
         Vector y(trial.forces);
@@ -601,6 +599,8 @@ namespace PeriDeal
     tangent.flows.resize(shapes.size());
     for (unsigned int i = 0; i < shapes.size(); ++i)
       {
+        if (shapes[i].share == 0.)
+          continue;
         Flow                &at = tangent.flows[i];
         J2Plasticity::Beside flow;
         flow.square = 3. * shapes[i].shear * shapes[i].stabilizer / families.nodes().volume(i) *
@@ -682,20 +682,20 @@ namespace PeriDeal
     const Tensor<2, dim> inverse(shape.inverse);
     const auto           strain = symmetrize(slopes);
     auto                 stress = (at != nullptr ? at->stiffness : shapes.elastic(i)) * strain;
-    double               c = shape.stabilizer, of_ratio = 0.;
+    double               c = shape.share * shape.stabilizer, of_ratio = 0.;
     if (at != nullptr && stresses.flows() && at->ratio < 1.)
       {
         const double of_square = 6. * shape.shear * shape.stabilizer / volume * products;
         stress += of_square * at->stress_slope;
-        of_ratio = shape.stabilizer *
-                   (6. * shape.shear * (at->stress_slope * strain) + at->ratio_slope * of_square);
+        of_ratio =
+          c * (6. * shape.shear * (at->stress_slope * strain) + at->ratio_slope * of_square);
         c *= at->ratio;
       }
     const Tensor<2, dim> pull = shapes.deformed.empty() ? Tensor<2, dim>(stress) :
                                                           shapes.deformed[i].change_of_pull(slopes);
     double *const        numbers =
       tangent.changes.begin() + (stresses.flows() ? n_numbers + 1 : n_numbers) * i;
-    write(numbers + at_force, Tensor<2, dim>(volume * (pull * inverse) - c * slopes));
+    write(numbers + at_force, Tensor<2, dim>(shape.share * volume * (pull * inverse) - c * slopes));
     numbers[at_stiffness] = c;
     if (stresses.flows())
       numbers[at_slopes] = of_ratio;

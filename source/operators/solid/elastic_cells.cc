@@ -67,7 +67,13 @@ namespace PeriDeal
                  body.cuts_in_part_at_tips(),
                  bonds && body.coupling.zone != ZoneKind::formula &&
                    body.coupling.zone != ZoneKind::adaptive})
-    , stresses(StressCells<dim>::of_scene(dofs, body, by_cracks))
+    , stresses(StressCells<dim>::of_scene(
+        dofs,
+        body,
+        by_cracks,
+        bonds && bonds->nodal() ?
+          [bonds](const Cell &cell) { return bonds->coupling().node_families()->share_of(cell); } :
+          typename StressCells<dim>::Share()))
     , dofs(dofs)
     , body(body)
     , bonds(bonds)

@@ -7,6 +7,7 @@
 #include <perideal/base/matrix_rows.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/bounds/spectrum.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/parts/element_layout.h>
 #include <perideal/operators/parts/event_work.h>
 #include <perideal/operators/parts/lumped_mass.h>
@@ -56,6 +57,14 @@ namespace PeriDeal
     }
 
 
+    /** Null, or families that stand beside the matrix. */
+    template <int dim>
+    NodalZone<dim> *nodal(const std::unique_ptr<SolidBondsBesideElements<dim>> &bonds)
+    {
+      return bonds ? bonds->nodal() : nullptr;
+    }
+
+
     /** Laws that know it. Collective. */
     template <int dim>
     void tell_damage(const ZoneBreaking<dim> &breaking, NodalLaw &law)
@@ -81,8 +90,9 @@ namespace PeriDeal
                                         const BodyParameters<dim>     &body,
                                         std::unique_ptr<Coupling<dim>> coupling)
     : SolidOperator<dim>(body, element_layout(dof_handler, coupling.get()))
-    , zone_bonds(coupling ? std::make_unique<SolidBondsBesideElements<dim>>(std::move(coupling)) :
-                            nullptr)
+    , zone_bonds(coupling ?
+                   std::make_unique<SolidBondsBesideElements<dim>>(std::move(coupling), body) :
+                   nullptr)
     , cells(dof_handler, body, zone_bonds.get(), this->temperature_change())
     , hanging(dof_handler, *nodes, dim)
     , mechanical(dof_handler, body, nodes, [this](const auto unknown) {
@@ -95,7 +105,7 @@ namespace PeriDeal
         law = std::make_unique<Law>(Law{NodalLaw(body.material.law, layout), {}, layout, layout});
         cells.with_shear = law->nodal.relaxes();
       }
-    if (zone_bonds && lists_bonds(body))
+    if (zone_bonds && lists_bonds(body) && !has_nodal_law(body))
       {
         Coupling<dim> &zone = zone_bonds->coupling();
         breaking            = std::make_unique<ZoneBreaking<dim>>(
@@ -262,6 +272,8 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             stiffness_diagonal.local_element(dim * i + d) += own[d];
         }
+    if (nodal(zone_bonds))
+      nodal(zone_bonds)->add_diagonal(stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
     if (breaking && breaking->any_broken())
       return hold_loose(stiffness_diagonal);
@@ -393,145 +405,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double ElasticElements<dim>::mend_zone(const Boxes                     &boxes,
-                                         const double                     of_cells,
-                                         const std::vector<unsigned int> &rows,
-                                         const Vector                    &u,
-                                         const std::function<void()>     &make_change)
-  {
-    const std::vector<Cell> near = cells.near(boxes, of_cells);
-    changes.any                  = true;
-    const double before          = law ? energy(u) : 0.;
-    double       gained          = add_parts(near, rows, -1., &u);
-    make_change();
-    gained += add_parts(near, rows, 1., &u);
-    stiffness.compress();
-    if (cells.with_shear)
-      law->shear.compress();
-    if (this->is_warm())
-      {
-        thermal_loads.compress(VectorOperation::add);
-        hanging.condense(thermal_loads);
-        this->keep_constant_loads();
-      }
-    if (breaking->any_broken())
-      cells.note_parted(&near);
-    const auto mend_diagonal = [&]() {
-      std::vector<unsigned int> touched = rows;
-      for (const unsigned int i : owned_unknowns<dim>(near, *nodes))
-        touched.push_back(i);
-      std::sort(touched.begin(), touched.end());
-      touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-      const Vector held    = this->held_unknowns();
-      const double largest = stiffness_diagonal.linfty_norm();
-      for (const unsigned int i : touched)
-        {
-          const Tensor<1, dim> of_bonds = breaking->bonds.diagonal_of(i);
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              const double value  = stiffness.diagonal(i, d) + of_bonds[d];
-              const bool   stands = value > 1e-13 * largest;
-              stiffness_diagonal.local_element(dim * i + d) = held.local_element(dim * i + d) > 0. ?
-                                                                1. :
-                                                              stands ? value :
-                                                                       largest;
-            }
-        }
-    };
-    if (!this->stepping.follow)
-      mend_diagonal();
-    if (law)
-      tell_damage(*breaking, law->nodal);
-    const double by_contact = contact->change(rows, u);
-    if (law) // forces and energies that were added are those of the linear one
-      return before - energy(u);
-    return by_contact - Utilities::MPI::sum(gained, nodes->get_mpi_communicator());
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::mend_unbalanced(Vector &r, const Vector &u, const double t) const
-  {
-    if (!breaking || this->is_warm() || law)
-      return this->unbalanced(r, u, t);
-    if (!changes.any)
-      return;
-    changes.forces.compress(VectorOperation::add);
-    hanging.condense(changes.forces);
-    hanging.set(changes.forces, 0.);
-    r -= changes.forces;
-    contact->add_last_forces(r, 1.);
-    contact->add_forces(r, u, -1.);
-    changes.forces = 0.;
-    changes.any    = false;
-  }
-
-
-  template <int dim>
-  bool ElasticElements<dim>::join_stretched(const Vector &u)
-  {
-    const std::vector<Point<dim>> places = breaking->find_places_to_join(u);
-    if (places.empty())
-      return false;
-    const auto joining = breaking->joining(places);
-    Boxes      boxes;
-    for (const auto &[node, weight] : joining)
-      boxes.emplace_back(std::vector<Point<dim>>{positions[node], positions[node]});
-    if (Utilities::MPI::sum(1. * boxes.size(), nodes->get_mpi_communicator()) == 0.)
-      return false;
-    const std::vector<unsigned int> rows = zone_bonds->nodes_near(boxes);
-    this->released_beside.by_joining += mend_zone(boxes, zone_bonds->reach(), rows, u, [&] {
-      zone_bonds->coupling().breakable()->join_nodes(joining);
-      breaking->bonds.set_rows(rows, cells.factors);
-    });
-    return true;
-  }
-
-
-  template <int dim>
-  bool ElasticElements<dim>::widen_zone(const Vector &u)
-  {
-    if (changes.any)
-      changes.forces = 0.;
-    changes.any = false;
-    if (!breaking || !body.coupling.follows_stretches())
-      return false;
-    const WithGhosts ghosts(u);
-    return join_stretched(u);
-  }
-
-
-  template <int dim>
-  void ElasticElements<dim>::break_bonds(const std::vector<DamagedBond> &list,
-                                         const Vector                   &u,
-                                         const double                    t)
-  {
-    const WithGhosts ghosts(u);
-    breaking->add_released(
-      mend_zone(breaking->parted_by(list), 0., breaking->rows_of(list), u, [&] {
-        if (const auto softer = breaking->take(list, t); body.material.law.softens())
-          breaking->bonds.set_rows(softer, cells.factors);
-      }));
-    join_stretched(u);
-  }
-
-
-  template <int dim>
-  unsigned long long ElasticElements<dim>::break_bonds(const Vector &u,
-                                                       const double  t,
-                                                       const double  share)
-  {
-    if (!breaking)
-      return 0;
-    const WithGhosts ghosts(u);
-    const auto       list = breaking->find_overstretched(u, share);
-    if (!list.empty())
-      break_bonds(list, u, t);
-    return list.size();
-  }
-
-
-  template <int dim>
   void ElasticElements<dim>::exchange_bonds(Archive                     &archive,
                                             const NodeKeys              &keys,
                                             const std::function<void()> &at_surrogate)
@@ -540,6 +413,11 @@ namespace PeriDeal
       {
         const Archive::Part part(archive, "law");
         archive.exchange("dissipated", this->released_beside.by_law);
+        if (nodal(zone_bonds))
+          {
+            const Archive::Part of_families(archive, "families");
+            nodal(zone_bonds)->exchange(archive, keys);
+          }
         if (law)
           law->nodal.exchange(archive, keys);
         else
@@ -626,6 +504,8 @@ namespace PeriDeal
       }
     if (breaking)
       breaking->bonds.add_forces(y, x, true);
+    if (nodal(zone_bonds))
+      nodal(zone_bonds)->add_product(y, x);
     x.set_ghost_state(is_known);
     hanging.set(y, 0.); // the nodes they follow from have all of it
   }
@@ -637,7 +517,10 @@ namespace PeriDeal
     if (cells.stresses && nonlinear())
       {
         const WithGhosts ghosts(u);
-        return cells.stresses->find_forces(y, hanging, u, t);
+        cells.stresses->find_forces(y, hanging, u, t);
+        if (nodal(zone_bonds))
+          nodal(zone_bonds)->add_forces(y, u, t);
+        return;
       }
     if (!law)
       return multiply(y, u);
@@ -673,6 +556,8 @@ namespace PeriDeal
     stiffness.sparse() = 0.;
     cells.stresses->add_tangent(stiffness, hanging, u);
     stiffness.compress();
+    if (nodal(zone_bonds))
+      nodal(zone_bonds)->linearize(u);
   }
 
 
@@ -696,7 +581,9 @@ namespace PeriDeal
     const WithGhosts ghosts(u);
     if (cells.stresses)
       {
-        const double dissipated = cells.stresses->accept(u, t);
+        double dissipated = cells.stresses->accept(u, t);
+        if (nodal(zone_bonds))
+          dissipated += nodal(zone_bonds)->accept(u, t);
         this->released_beside.by_law += dissipated;
         if ((dissipated > 0. || cells.stresses->law().may_fail()) && body.elasticity.is_static())
           linearize(u); // as for a run that goes on from here
@@ -722,7 +609,8 @@ namespace PeriDeal
     if (cells.stresses && nonlinear())
       {
         const WithGhosts ghosts(u);
-        return cells.stresses->energy(u) + contact->energy(u);
+        const double     of_families = nodal(zone_bonds) ? nodal(zone_bonds)->energy(u) : 0.;
+        return cells.stresses->energy(u) + of_families + contact->energy(u);
       }
     Vector image;
     this->initialize_vector(image);
@@ -768,6 +656,8 @@ namespace PeriDeal
     });
     if (breaking)
       breaking->bonds.add_row_sums(row_sums);
+    if (nodal(zone_bonds))
+      nodal(zone_bonds)->add_row_sums(row_sums);
     for (const unsigned int i : hanging.owned())
       row_sums[i] = 0.;
     double bound = 0.;
@@ -781,7 +671,7 @@ namespace PeriDeal
   template <int dim>
   void ElasticElements<dim>::assemble_surrogate(TrilinosWrappers::SparseMatrix &matrix) const
   {
-    if (!breaking)
+    if (!breaking && !(zone_bonds && body.elasticity.is_correspondence()))
       {
         if (cells.stresses && !cells.is_full()) // else that may have turned far
           {
@@ -801,7 +691,8 @@ namespace PeriDeal
       if (!cells.by_cracks.is_cut(cell) && !zone_bonds->coupling().parts_cell(cell))
         hanging.add_to(matrix, data.stiffness, data.unknowns);
     });
-    breaking->bonds.add_between_vertices(matrix);
+    if (breaking)
+      breaking->bonds.add_between_vertices(matrix);
     matrix.compress(VectorOperation::add);
     Vector loose = this->held_unknowns();
     mark_loose(matrix, stiffness_diagonal, loose);
@@ -834,13 +725,17 @@ namespace PeriDeal
     OperatorSize size;
     size.unknowns = unknowns->size();
     size.nonzeros = stiffness.n_entries();
-    size.bonds    = std::llround(Utilities::MPI::sum(breaking ? breaking->bonds.n_whole() : n_bonds,
+    size.bonds    = std::llround(Utilities::MPI::sum(breaking          ? breaking->bonds.n_whole() :
+                                                  nodal(zone_bonds) ? nodal(zone_bonds)->n_bonds() :
+                                                                      n_bonds,
                                                   nodes->get_mpi_communicator()));
     size.memory   = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
     if (zone_bonds)
       size.memory += zone_bonds->coupling().memory_consumption();
     if (breaking)
       size.memory += breaking->memory_consumption();
+    if (nodal(zone_bonds))
+      size.memory += nodal(zone_bonds)->memory_consumption();
     size.form = "matrix";
     return size;
   }

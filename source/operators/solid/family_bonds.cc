@@ -19,8 +19,8 @@ namespace PeriDeal
                                 const BodyParameters<dim> &body,
                                 const NodalLaw            *law)
     : ZoneBonds<dim>(coupling.families(), law)
-    , body(body)
     , zone(*coupling.breakable())
+    , body(body)
   {
     coefficients.stiffness.reinit(this->families.nodes().partitioner());
     coefficients.dilatation.reinit(coefficients.stiffness);

@@ -3,6 +3,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/base/smallest_eigenvalue.h>
+#include <perideal/laws/nodal_stiffness.h>
 #include <perideal/operators/solid/node_shapes.h>
 
 #include <Eigen/Eigenvalues>
@@ -15,31 +16,6 @@ namespace PeriDeal
 
   namespace
   {
-    /** Of a stiffness, or a compliance: the shear modulus of its mean over all directions. */
-    template <int dim>
-    double mean_shear(const SymmetricTensor<4, dim> &C)
-    {
-      if (dim == 1)
-        return 0.5 * C[0][0][0][0];
-      double trace = 0., of_volume = 0.;
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = 0; b < dim; ++b)
-          {
-            trace += C[a][b][a][b];
-            of_volume += C[a][a][b][b];
-          }
-      return (trace - of_volume / dim) / (dim * (dim + 1.) - 2.);
-    }
-
-
-    /** A shear modulus by which no shear is much stiffer than in the body: Reuss's mean. */
-    template <int dim>
-    double soft_shear(const SymmetricTensor<4, dim> &C)
-    {
-      return 0.25 / mean_shear(invert(C));
-    }
-
-
     /** The largest eigenvalue of a stiffness as a map of strains. */
     template <int dim>
     double largest_modulus(const SymmetricTensor<4, dim> &C)
@@ -93,9 +69,6 @@ namespace PeriDeal
   template <int dim>
   void NodeShapes<dim>::renew(const std::vector<unsigned int> &nodes)
   {
-    // Of bonds that have broken too few may be left for a gradient, and those that are would make
-    // the node so stiff that steps are no longer stable. At a face of a crack half of M is left.
-    constexpr double  few   = 0.35;
     const std::size_t known = of_bonds.body.size();
     of_bonds.resize(bonds);
     for (std::size_t k = known; k < bonds.body.size(); ++k) // of nodes that have got a row
@@ -118,10 +91,10 @@ namespace PeriDeal
         });
         Shape       &shape = list[i];
         const double q     = laws.weighted.local_element(i);
-        const bool   holds = !lost ||
-                           dim * smallest_eigenvalue(M) > few * q * families.nodes().volume(i);
-        shape.inverse    = holds ? invert(M) : Full();
-        shape.stabilizer = holds ? dim * (dim + 2.) * shape.shear / q : 0.;
+        const bool   holds = !lost ? trace(M) > 0. : // else beside a zone, without bonds
+                                   bonds_hold(M, q * families.nodes().volume(i));
+        shape.inverse      = holds ? invert(M) : Full();
+        shape.stabilizer   = holds ? PeriDeal::stabilizer<dim>(shape.shear, q) : 0.;
       }
   }
 
@@ -140,7 +113,7 @@ namespace PeriDeal
           for (unsigned int a = 0; a < dim; ++a)
             for (unsigned int c = 0; c < dim; ++c)
               product += b[a] * b[c] * C[d][a][d][c];
-          return families.nodes().volume(i) * product;
+          return shape.share * families.nodes().volume(i) * product;
         };
         Tensor<1, dim> of_node;
         double         all = 0.;
@@ -148,7 +121,7 @@ namespace PeriDeal
           i,
           [&](const unsigned int j, const Tensor<1, dim> &moment, const double w, std::size_t) {
             const Tensor<1, dim> b     = shape.inverse * moment;
-            const double         aside = shape.stabilizer * (w - b * moment);
+            const double         aside = shape.share * shape.stabilizer * (w - b * moment);
             of_node += moment;
             all += w;
             const auto add =
@@ -167,7 +140,7 @@ namespace PeriDeal
         const Tensor<1, dim> b = shape.inverse * of_node;
         for (unsigned int d = 0; d < dim; ++d)
           sum.local_element(dim * i + d) +=
-            stiffness(d, b) + shape.stabilizer * (all - b * of_node);
+            stiffness(d, b) + shape.share * shape.stabilizer * (all - b * of_node);
       }
     sum.compress(VectorOperation::add);
     std::copy(sum.begin(), sum.begin() + sum.locally_owned_size(), diagonal.begin());
@@ -190,8 +163,8 @@ namespace PeriDeal
           modulus = largest_modulus(deformed[i].stiffness) * deformed[i].gradient.norm_square() +
                     deformed[i].stress.norm();
         const double kappa =
-          std::max(shape.stabilizer,
-                   modulus * nodes.volume(i) * -smallest_eigenvalue(-shape.inverse));
+          shape.share * std::max(shape.stabilizer,
+                                 modulus * nodes.volume(i) * -smallest_eigenvalue(-shape.inverse));
         for_each_bond(
           i,
           [&](const unsigned int j, const Tensor<1, dim> &, const double w, std::size_t) {

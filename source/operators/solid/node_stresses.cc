@@ -6,6 +6,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/base/worst_trip.h>
 #include <perideal/laws/linear_stress.h>
+#include <perideal/laws/nodal_stiffness.h>
 #include <perideal/operators/solid/node_stresses.h>
 #include <perideal/operators/solid/stress_laws.h>
 
@@ -18,22 +19,6 @@
 namespace PeriDeal
 {
   using namespace dealii;
-
-  namespace
-  {
-    template <int dim>
-    SymmetricTensor<4, dim> in_body(const StressLaw::Tangent &full)
-    {
-      SymmetricTensor<4, dim> part;
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = a; b < dim; ++b)
-          for (unsigned int c = 0; c < dim; ++c)
-            for (unsigned int d = c; d < dim; ++d)
-              part[a][b][c][d] = full[a][b][c][d];
-      return part;
-    }
-  } // namespace
-
 
   template <int dim>
   NodeStresses<dim>::NodeStresses(const Nodes<dim>          &nodes,

@@ -6,6 +6,7 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <perideal/base/instantiate.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/coupling/state_coupling.h>
 #include <perideal/operators/solid/solid_bonds_beside_elements.h>
 #include <perideal/operators/solid/zone_breaking.h>
@@ -41,9 +42,13 @@ namespace PeriDeal
 
 
   template <int dim>
-  SolidBondsBesideElements<dim>::SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling)
+  SolidBondsBesideElements<dim>::SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling,
+                                                          const BodyParameters<dim>     &body)
     : coupled(std::move(coupling))
-  {}
+  {
+    if (has_nodal_law(body))
+      own_nodal = std::make_unique<NodalZone<dim>>(*coupled, body);
+  }
 
 
   template <int dim>
@@ -98,7 +103,8 @@ namespace PeriDeal
           pattern.add_entries(dim * layout.local_to_global(i) + d, columns.begin(), columns.end());
       }
     const NodeFamilies<dim> *const families = coupled->node_families();
-    for (unsigned int i = 0; i < layout.locally_owned_size() && families != nullptr; ++i)
+    for (unsigned int i = 0; i < layout.locally_owned_size() && families != nullptr && !own_nodal;
+         ++i)
       families->visit_nodes_of_family(i, [&](const Family &family) {
         unknowns_of(family, columns);
         for (unsigned int a = 0; a < columns.size(); ++a)
@@ -159,7 +165,7 @@ namespace PeriDeal
                                                    Rows                           &rows) const
   {
     double n = 0.;
-    if (coupled->node_families() == nullptr)
+    if (coupled->node_families() == nullptr || own_nodal)
       return n;
     coupled->node_families()->visit_family(node, intact, {}, [&](const Family &family) {
       unknowns_of(family, rows.columns);

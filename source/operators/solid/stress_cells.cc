@@ -19,7 +19,8 @@ namespace PeriDeal
   template <int dim>
   std::unique_ptr<StressCells<dim>> StressCells<dim>::of_scene(const DoFHandler<dim>     &dofs,
                                                                const BodyParameters<dim> &body,
-                                                               const CutCells<dim>       &cracks)
+                                                               const CutCells<dim>       &cracks,
+                                                               const Share               &share)
   {
     PlacedStressLaw<dim> law = stress_law_of(body);
     if (!law.law)
@@ -33,7 +34,8 @@ namespace PeriDeal
                                          std::move(law),
                                          kinematics,
                                          cracks,
-                                         StressSteps::of_scene(body));
+                                         StressSteps::of_scene(body),
+                                         share);
   }
 
 
@@ -42,11 +44,13 @@ namespace PeriDeal
                                 PlacedStressLaw<dim>   law,
                                 const Kinematics      &kinematics,
                                 const CutCells<dim>   &cracks,
-                                const StressSteps     &steps)
+                                const StressSteps     &steps,
+                                const Share           &share)
     : dofs(dofs)
     , of_points(std::move(law.law))
     , cracks(cracks)
     , first(dofs.get_triangulation().n_active_cells(), 0)
+    , share(share)
     , steps(steps)
     , at{ProjectedStrains<dim>(dofs.get_fe(), kinematics.projects && !kinematics.is_full),
          nullptr,
@@ -104,14 +108,16 @@ namespace PeriDeal
     if (at.deformed)
       at.deformed->reinit(at.strains.values(), at.u, with_tangents);
     StressLaw::Trial trial;
-    trial.length           = std::pow(cell->measure(), 1. / dim) / dofs.get_fe().degree;
-    trial.element          = cell->global_active_cell_index();
+    trial.length  = std::pow(cell->measure(), 1. / dim) / dofs.get_fe().degree;
+    trial.element = cell->global_active_cell_index();
+    double kept   = u == nullptr ? 1. : cracks.kept_of_removed(cell);
+    if (u != nullptr && share)
+      kept *= share(cell);
     const double *of_point = all_parameters.data() + first_of(cell) * of_points->n_parameters();
     for (unsigned int q = 0; q < at.points.size(); ++q)
       {
-        LawPoint &point = at.points[q];
-        point.weight =
-          (u == nullptr ? 1. : cracks.kept_of_removed(cell)) * at.strains.values().JxW(q);
+        LawPoint &point  = at.points[q];
+        point.weight     = kept * at.strains.values().JxW(q);
         trial.parameters = of_point + q * of_points->n_parameters();
         trial.state      = accepted + q * of_points->n_state();
         trial.point      = q;

@@ -7,6 +7,7 @@
 #include <perideal/laws/linear_stress.h>
 #include <perideal/laws/neo_hooke.h>
 #include <perideal/laws/user_stress.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/solid/stress_laws.h>
 #include <perideal/scene/orthotropy.h>
 #include <perideal/scene/user_properties.h>
@@ -104,15 +105,8 @@ namespace PeriDeal
   template <int dim>
   PlacedStressLaw<dim> linear_stress_law(const BodyParameters<dim> &body)
   {
-    const StressState kind = stress_state_of(dim, body.elasticity.plane);
-    return {std::make_unique<const LinearStress>(),
-            [&material = body.material, kind](const Point<dim> &p) {
-              const Material::Law::Orthotropy &orthotropy = material.law.orthotropy;
-              if (orthotropy.young.empty())
-                return LinearStress::parameters(isotropic_stiffness(material.moduli(p), kind));
-              const StressLaw::Tangent C = orthotropic_stiffness(orthotropy, p);
-              return LinearStress::parameters(
-                kind == StressState::plane_stress ? in_plane_stress(C) : C);
+    return {std::make_unique<const LinearStress>(), [&body](const Point<dim> &p) {
+              return LinearStress::parameters(linear_stiffness(body, p));
             }};
   }
 

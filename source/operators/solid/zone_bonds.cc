@@ -6,6 +6,7 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/mesh/lattice_sites.h>
 #include <perideal/operators/solid/family_bonds.h>
+#include <perideal/operators/solid/nodal_bonds.h>
 #include <perideal/operators/solid/pair_bonds.h>
 
 #include <algorithm>
@@ -366,6 +367,8 @@ namespace PeriDeal
   {
     if (const auto *lattice = dynamic_cast<const LatticeBonds<dim> *>(coupling.breakable()))
       return std::make_unique<PairBonds<dim>>(coupling, *lattice, law);
+    if (body.elasticity.is_correspondence())
+      return std::make_unique<NodalBonds<dim>>(coupling, body);
     return std::make_unique<FamilyBonds<dim>>(coupling, body, law);
   }
 

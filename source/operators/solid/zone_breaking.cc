@@ -7,6 +7,7 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 #include <perideal/base/place_text.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/solid/zone_breaking.h>
 
 #include <algorithm>
@@ -597,7 +598,7 @@ namespace PeriDeal
       coupling.follows_stretches() && !breaks,
       "Zone",
       "'follow' is for bonds that may break: give section 'Material' a 'Fracture energy' or a 'Critical stretch', or use 'cracks: 1'.");
-    if (!lists_bonds(body))
+    if (!lists_bonds(body) || has_nodal_law(body))
       return;
     if (!breaks)
       {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
@@ -35,6 +36,12 @@ namespace PeriDeal
     using ThermalStrain = std::function<double(const unsigned int)>;
 
     virtual ~NodeFamilies() = default;
+
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+
+    /** What counts of the energy of the family of a node known here, and of that of a cell. */
+    virtual double share_of(const unsigned int node) const = 0;
+    virtual double share_of(const Cell &cell) const        = 0;
 
     /**
      * Visit what the family of an owned node adds, also to rows of other processes.

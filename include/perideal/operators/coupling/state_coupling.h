@@ -33,6 +33,8 @@ namespace PeriDeal
    * Where bonds break, FamilyBonds has the families, beside the matrix, and q_i is of the body
    * before; what is visited here knows nothing of broken bonds.
    *
+   * With correspondence (`Model`) K_i is that of NodalFamily, of families that end at the surface.
+   *
    * In one dimension there is no dilatation, and the bonds of a family are visited one by one, so
    * that rows reach one horizon and not two.
    *
@@ -49,7 +51,7 @@ namespace PeriDeal
     using typename NodeFamilies<dim>::Family;
     using typename NodeFamilies<dim>::ThermalStrain;
 
-    /** As WeightedCoupling. */
+    /** As WeightedCoupling; with correspondence the body has to outlive this object. */
     StateCoupling(Nodes<dim>                &nodes,
                   const BodyParameters<dim> &body,
                   const Zone<dim>           &zone,
@@ -79,6 +81,16 @@ namespace PeriDeal
     void        visit_nodes_of_family(const unsigned int                         node,
                                       const std::function<void(const Family &)> &visit) const override;
     std::string fault_of(const unsigned int node) const override;
+    double      share_of(const unsigned int node) const override
+    {
+      return this->weighting.of_family(weights_now[node]);
+    }
+
+    double share_of(const Cell &cell) const override
+    {
+      return this->weighting.of_cell(weights_now.mean(cell));
+    }
+
     std::vector<dealii::types::boundary_id> mirrors() const override
     {
       return symmetry_sides;
@@ -137,13 +149,18 @@ namespace PeriDeal
     static void add_dilatation(const std::vector<BondOfFamily> &list,
                                const double                     factor,
                                Family                          &family);
-    void        scale_rows(Family &family) const;
+    /** Of a node of correspondence, whose family has only real bonds. */
+    void add_nodal(const std::vector<BondOfFamily> &list,
+                   const ThermalStrain             &strain,
+                   Family                          &family) const;
+    void scale_rows(Family &family) const;
 
     std::optional<FictitiousExtension<dim>> extension;
     std::optional<FamilyZone<dim>>          breaks;         // none: no bonds break
     std::vector<dealii::types::boundary_id> symmetry_sides; // with an extension
-    std::vector<bool>     acts; // of owned nodes: the family ever reaches the zone
-    std::vector<StateLaw> laws; // of owned nodes that act
+    std::vector<bool>                acts;  // of owned nodes: the family ever reaches the zone
+    std::vector<StateLaw>            laws;  // of owned nodes that act
+    const BodyParameters<dim> *const nodal; // with correspondence; else null
   };
 
 } // namespace PeriDeal

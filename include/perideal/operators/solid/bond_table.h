@@ -54,11 +54,14 @@ namespace PeriDeal
     /**
      * The bonds in the body. Sets q of the owned nodes to the sums over these. Families, laws and
      * ends have to outlive this object. Collective. Throws UserError: isolated nodes.
+     * @param of_nodes empty, or of owned nodes those that have bonds, all of which they store;
+     *                 others, on a lattice, have none, and the q of a complete family
      */
     BondTable(const Families<dim>       &families,
               NodeLaws<dim>             &laws,
               const BondEnds<dim>       &ends,
-              const BodyParameters<dim> &body);
+              const BodyParameters<dim> &body,
+              const std::vector<bool>   &of_nodes = {});
 
     /**
      * The bonds to the fictitious nodes of @p ends; adds to q of the owned nodes.

@@ -51,6 +51,8 @@ namespace PeriDeal
    * might let them flow. The energy of the body needs no B of them: what z stores is half of the
    * work of its forces, so that with F.u all of it follows from stresses.
    *
+   * Beside finite elements a node counts by its share (Shape::share) of energy and forces.
+   *
    * With full kinematics the law is one of large deformations (StressLaw), and P = F S stands for
    * sigma, F = 1 + G. Then z = (xi + du) - F xi is what the deformed bonds have beside F; no
    * rotation changes |z|. Where a node is inside out, all that is collective throws Diverged

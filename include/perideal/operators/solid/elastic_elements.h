@@ -29,7 +29,8 @@ namespace PeriDeal
    *
    * Where bonds may break (ZoneBreaking) they are no part of the matrix but a list beside it, and
    * what breaks or joins the zone changes only cells and rows beside it. The preconditioner is then
-   * made for the elements of cells that are not cut, with the bonds between vertices of one cell.
+   * made for the elements of cells that are not cut, with the bonds between vertices of one cell;
+   * with correspondence in the zone (NodalZone), for these elements alone.
    *
    * With another law than the linear one (NodalLaw) the bonds of the zone answer by it, and where
    * it relaxes the shear of the cells does: with S the part of K that the shear modulus multiplies,
@@ -61,7 +62,7 @@ namespace PeriDeal
     Spectrum spectrum() const override;
     bool     surrogate_is_exact() const override
     {
-      return !breaking && !law;
+      return !breaking && !law && !(zone_bonds && body.elasticity.is_correspondence());
     }
 
     OperatorSize size() const override;

@@ -36,14 +36,16 @@ namespace PeriDeal
     /** Owned nodes within the reach of a family. */
     std::vector<unsigned int> rows_at(const std::vector<unsigned int> &ends) const override;
 
-  private:
+  protected:
     using ZoneBonds<dim>::coefficients;
 
+    const BreakableZone<dim> &zone;
+
+  private:
     StateLaw law_of(const unsigned int node) const;
     void     set_row_of(const unsigned int node);
 
     const BodyParameters<dim> &body;
-    const BreakableZone<dim>  &zone;
     // Memory of set_row_of().
     std::vector<typename Families<dim>::Member>     family;
     std::vector<typename DiffusionBonds<dim>::Bond> list;

@@ -56,6 +56,7 @@ namespace PeriDeal
     {
       Full         inverse;                     // M^-1
       double       shear = 0., stabilizer = 0.; // mu, c
+      double       share     = 1.;              // of its energy, that counts
       unsigned int stiffness = 0;               // in a list
     };
 
@@ -100,6 +101,12 @@ namespace PeriDeal
     const Stiffness &elastic(const unsigned int i) const
     {
       return stiffnesses[list[i].stiffness];
+    }
+
+    /** So much of the energy of an owned node counts. */
+    void set_share(const unsigned int i, const double share)
+    {
+      list[i].share = share;
     }
 
     /** W of the stored bonds. */

@@ -7,6 +7,7 @@
 #include <perideal/operators/coupling/node_families.h>
 #include <perideal/operators/parts/crack_side_factors.h>
 #include <perideal/operators/solid/crack_contact.h>
+#include <perideal/operators/solid/nodal_zone.h>
 
 #include <memory>
 #include <vector>
@@ -35,7 +36,9 @@ namespace PeriDeal
     /** Throws UserError for a body that cannot have them. Not collective. */
     static void require(const BodyParameters<dim> &body);
 
-    explicit SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling);
+    /** The body has to outlive this object. Collective. Throws UserError (NodalZone). */
+    SolidBondsBesideElements(std::unique_ptr<Coupling<dim>> coupling,
+                             const BodyParameters<dim>     &body);
 
     const Coupling<dim> &coupling() const
     {
@@ -45,6 +48,12 @@ namespace PeriDeal
     Coupling<dim> &coupling()
     {
       return *coupled;
+    }
+
+    /** Null, or the families, of which no matrix knows then. */
+    NodalZone<dim> *nodal() const
+    {
+      return own_nodal.get();
     }
 
     const Nodes<dim> &nodes() const
@@ -147,6 +156,7 @@ namespace PeriDeal
     void                   unknowns_of(const Family                                 &family,
                                        std::vector<dealii::types::global_dof_index> &indices) const;
 
-    std::unique_ptr<Coupling<dim>> coupled;
+    std::unique_ptr<Coupling<dim>>  coupled;
+    std::unique_ptr<NodalZone<dim>> own_nodal;
   };
 } // namespace PeriDeal

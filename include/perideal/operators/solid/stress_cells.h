@@ -12,6 +12,7 @@
 #include <perideal/operators/solid/stress_laws.h>
 #include <perideal/operators/solid/stress_steps.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -36,16 +37,20 @@ namespace PeriDeal
     /** A quadrature point in the cell that is looked at. */
     struct LawPoint
     {
-      double              weight = 0.; // volume, as far as cracks leave it
+      double              weight = 0.; // volume, as far as cracks and families leave it
       StressLaw::Response response;
       std::vector<double> state; // next one
       StressLaw::Tangent  tangent;
     };
 
+    /** What counts of a cell beside families; empty: all. */
+    using Share = std::function<double(const Cell &)>;
+
     /** The law of the scene; null: it has none for stresses. Collective. Throws UserError. */
     static std::unique_ptr<StressCells> of_scene(const dealii::DoFHandler<dim> &dofs,
                                                  const BodyParameters<dim>     &body,
-                                                 const CutCells<dim>           &cracks);
+                                                 const CutCells<dim>           &cracks,
+                                                 const Share                   &share);
 
     struct Kinematics
     {
@@ -58,7 +63,8 @@ namespace PeriDeal
                 PlacedStressLaw<dim>           law,
                 const Kinematics              &kinematics,
                 const CutCells<dim>           &cracks,
-                const StressSteps             &steps = {});
+                const StressSteps             &steps = {},
+                const Share                   &share = {});
 
     const StressLaw &law() const
     {
@@ -157,6 +163,7 @@ namespace PeriDeal
     const std::unique_ptr<const StressLaw> of_points;
     const CutCells<dim>                   &cracks;
     std::vector<std::size_t>               first; // by active cell index
+    const Share                            share;
     std::vector<double>                    all_parameters, states;
     bool                                   begun = false;
 

@@ -98,7 +98,7 @@ namespace PeriDeal
     dealii::Tensor<1, dim> diagonal_of(const unsigned int node) const;
 
     /** Add the sums over the absolute values of rows of K, or more. Collective. */
-    void add_row_sums(std::vector<double> &sums) const;
+    virtual void add_row_sums(std::vector<double> &sums) const;
 
     /** Add to a matrix what whole bonds between vertices of a cell have of K. Not compressed. */
     void add_between_vertices(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
@@ -183,6 +183,18 @@ namespace PeriDeal
     } coefficients;
     const NodalLaw *const law; // null: the linear solid
 
+    /** Of the public functions. @param u, thermal may be null: none */
+    virtual void   add_forces_of(const std::vector<unsigned int> &of_nodes,
+                                 const double                     multiple,
+                                 Vector                          &y,
+                                 const double                    *u,
+                                 const double                    *thermal,
+                                 const bool                       of_tangent = false) const;
+    virtual double energy(const double                    *u,
+                          const std::vector<unsigned int> &of_nodes,
+                          const double                    *thermal,
+                          const bool                       dissipated = false) const;
+
   private:
     struct Row
     {
@@ -198,17 +210,6 @@ namespace PeriDeal
 
     /** Whether nodes have any a_i sum_j W_ij c_ij, which is found. */
     bool find_tensions(const double *u, const double *thermal, const bool of_tangent) const;
-
-    void   add_forces_of(const std::vector<unsigned int> &of_nodes,
-                         const double                     multiple,
-                         Vector                          &y,
-                         const double                    *u,
-                         const double                    *thermal,
-                         const bool                       of_tangent = false) const;
-    double energy(const double                    *u,
-                  const std::vector<unsigned int> &of_nodes,
-                  const double                    *thermal,
-                  const bool                       dissipated = false) const;
 
     std::vector<dealii::Tensor<1, dim>> vectors;
     mutable Vector                      tensions;            // a_i sum_j W_ij c_ij

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the PeriDeal authors
+
+#include <perideal/base/instantiate.h>
+#include <perideal/base/interleaved.h>
+#include <perideal/operators/coupling/node_families.h>
+#include <perideal/operators/solid/nodal_zone.h>
+
+#include <algorithm>
+
+namespace PeriDeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Leaves the ghosts of a vector as they were. */
+    class KeptGhosts
+    {
+    public:
+      explicit KeptGhosts(const Vector &vector)
+        : vector(vector)
+        , is_known(vector.has_ghost_elements())
+      {}
+
+      ~KeptGhosts()
+      {
+        vector.set_ghost_state(is_known);
+      }
+
+    private:
+      const Vector &vector;
+      const bool    is_known;
+    };
+  } // namespace
+
+
+  template <int dim>
+  std::vector<bool> NodalZone<dim>::reaching(const Coupling<dim> &coupling)
+  {
+    const Families<dim>                        &families = coupling.families();
+    const NodeFamilies<dim>                    &shares   = *coupling.node_families();
+    std::vector<bool>                           result(families.nodes().n_owned());
+    std::vector<typename Families<dim>::Member> members;
+    for (unsigned int i = 0; i < result.size(); ++i)
+      {
+        families.members_of(i, members);
+        result[i] = shares.share_of(i) > 0. ||
+                    std::any_of(members.begin(), members.end(), [&](const auto &member) {
+                      return shares.share_of(member.neighbor) > 0.;
+                    });
+      }
+    return result;
+  }
+
+
+  template <int dim>
+  NodalZone<dim>::NodalZone(const Coupling<dim> &coupling, const BodyParameters<dim> &body)
+    : laws(coupling.families().nodes(), body)
+    , ends(coupling.families())
+    , rows(coupling.families(), laws, ends, body, reaching(coupling))
+    , nodal(
+        (laws.weighted.update_ghost_values(),
+         rows.find_springs(false, body.material.law.yields() ? Correspondence<dim>::n_history : 0),
+         coupling.families()),
+        ends,
+        rows,
+        laws,
+        thermal,
+        body)
+    , found(interleaved(*coupling.families().nodes().partitioner(), dim))
+  {
+    const NodeFamilies<dim> &shares = *coupling.node_families();
+    for (unsigned int i = 0; i < nodal.shapes.size(); ++i)
+      {
+        nodal.shapes.set_share(i, shares.share_of(i));
+        rows.for_each(i, [&](const auto &bond) {
+          if (shares.share_of(i) > 0. || shares.share_of(bond.neighbor) > 0.)
+            n_in_zone += 0.5;
+        });
+      }
+  }
+
+
+  template <int dim>
+  void NodalZone<dim>::add_product(Vector &y, const Vector &x) const
+  {
+    const KeptGhosts ghosts(x);
+    nodal.multiply(found, x);
+    y += found;
+  }
+
+
+  template <int dim>
+  void NodalZone<dim>::add_forces(Vector &y, const Vector &u, const double t) const
+  {
+    const KeptGhosts ghosts(u);
+    nodal.find_forces(found, u, t);
+    y += found;
+  }
+
+
+  template <int dim>
+  double NodalZone<dim>::energy(const Vector &u) const
+  {
+    const KeptGhosts ghosts(u);
+    return nodal.energy(u);
+  }
+
+
+  template <int dim>
+  double NodalZone<dim>::accept(const Vector &u, const double t)
+  {
+    const KeptGhosts ghosts(u);
+    return nodal.accept(u, t);
+  }
+
+
+  template <int dim>
+  void NodalZone<dim>::linearize(const Vector &u)
+  {
+    const KeptGhosts ghosts(u);
+    nodal.linearize(u);
+  }
+
+
+  template <int dim>
+  void NodalZone<dim>::add_diagonal(Vector &diagonal) const
+  {
+    nodal.shapes.find_diagonal(found);
+    diagonal += found;
+  }
+
+
+  template <int dim>
+  void NodalZone<dim>::add_row_sums(std::vector<double> &sums) const
+  {
+    const Vector of_nodes = nodal.shapes.row_sums();
+    for (unsigned int i = 0; i < sums.size(); ++i)
+      sums[i] += of_nodes.local_element(i / dim);
+  }
+
+
+  PERIDEAL_INSTANTIATE_CLASS(class NodalZone);
+} // namespace PeriDeal
