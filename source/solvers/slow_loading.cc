@@ -265,7 +265,7 @@ namespace PeriDeal
   {
     constexpr double share = 0.9; // of the largest stretch: what breaks at once
     // What is stretched much too far would break all at once in a motion.
-    const double most  = motion ? op.stretch_over_critical(u) : 0.;
+    const double most  = motion ? op.stretch_over_critical(u, t) : 0.;
     const bool   moves = most > 0. && most < shatters;
     if (op.break_bonds(u, t, share) == 0)
       return false;
@@ -302,7 +302,7 @@ namespace PeriDeal
       }
     breaking.is_open = false;
     if (options.divides_steps && op.brittle())
-      breaking.most = op.stretch_over_critical(u);
+      breaking.most = op.stretch_over_critical(u, t);
     if (!breaking.any)
       return;
     op.unbalanced(memory.unbalanced, u, t);
@@ -332,7 +332,7 @@ namespace PeriDeal
     if (!options.divides_steps || !op.brittle())
       return {end, 0.};
     const double begins = motion ? begins_in_motion : begins_at_rest;
-    double       most   = op.stretch_over_critical(u);
+    double       most   = op.stretch_over_critical(u, t);
     while (most > begins && end - reached.time > shortest * (breaking.goal - reached.time))
       {
         // Were it linear in t. It is convex where u is: at most this, then.
@@ -341,7 +341,7 @@ namespace PeriDeal
         end                 = reached.time + part * (end - reached.time);
         u.sadd(part, 1. - part, before.state);
         solve(u, end);
-        most = op.stretch_over_critical(u);
+        most = op.stretch_over_critical(u, end);
       }
     return {end, most};
   }

@@ -176,6 +176,9 @@ Initial and source/Initial velocity=1, 0 => 'Initial velocity' | no effect | 'dy
 Boundary conditions/Displacement=left: 0, 0; right: t, 0 & Time/Steady=true => 'Steady' | depend on t
 Models=coupled & Material/Critical stretch=0.1 & Coupling/Zone=cracks: 1 => 'Zone' | is empty | 'follow'
 Material/Weibull modulus=10 & Material/Strength seed=1 => 'Weibull modulus' | bonds that break | 'Fracture energy' | 'Critical stretch'
+Models=coupled & Material/Fracture energy=1 & Material/Criterion=energy & Coupling/Zone=follow => 'Criterion' | 'Models = peridynamics' | 'stretch'
+Models=peridynamics & Elasticity/Model=correspondence & Material/Fracture energy=1 & Material/Criterion=energy => 'Criterion' | correspondence
+Models=peridynamics & Peridynamics/Surface correction=fictitious nodes & Material/Critical stress=1 & Material/Criterion=von mises => 'Criterion' | beyond the body | 'fictitious nodes'
 Elasticity/Breaking=at rest => 'Breaking' in section 'Elasticity' | bonds that break | 'Fracture energy'
 Elasticity/Kinematics=full => 'Kinematics' | 'linear' | 'conjugate gradients'
 Elasticity/Preconditioner=none => 'Preconditioner' | conjugate gradients | 'linear'

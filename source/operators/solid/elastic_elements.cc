@@ -221,7 +221,7 @@ namespace PeriDeal
             std::vector<double> strains(positions.size());
             for (unsigned int i = 0; i < strains.size(); ++i)
               strains[i] = strain(i);
-            breaking->set_thermal(std::move(strains));
+            breaking->set_thermal(std::move(strains), this->temperature_change());
             energy = breaking->bonds.add_thermal(thermal_loads,
                                                  breaking->bonds.nodes(),
                                                  breaking->thermal_strains(),
@@ -524,7 +524,7 @@ namespace PeriDeal
     if (!breaking)
       return 0;
     const WithGhosts ghosts(u);
-    const auto       list = breaking->find_overstretched(u, share);
+    const auto       list = breaking->find_overstretched(u, t, share);
     if (!list.empty())
       break_bonds(list, u, t);
     return list.size();
