@@ -44,7 +44,7 @@ namespace PeriDeal
       " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
     const std::string formula = ": a number or a formula of x, y, z.";
     const std::string of_changes =
-      ": a number or a formula of x, y, z, the time t and the temperature T (Temperature change in section `Elasticity` + Reference temperature).";
+      ": a number or a formula of x, y, z, the time t and T, the temperature where it is computed, else the Temperature change that is given (section `Elasticity`).";
 
     /** An entry whose text the section itself reads. */
     struct PlainEntry

@@ -178,7 +178,7 @@ Models=coupled & Material/Critical stretch=0.1 & Coupling/Zone=cracks: 1 => 'Zon
 Material/Weibull modulus=10 & Material/Strength seed=1 => 'Weibull modulus' | bonds that break | 'Fracture energy' | 'Critical stretch'
 Models=coupled & Material/Fracture energy=1 & Material/Criterion=energy & Coupling/Zone=follow => 'Criterion' | 'Models = peridynamics' | 'stretch'
 Models=peridynamics & Elasticity/Model=correspondence & Material/Fracture energy=1 & Material/Criterion=energy => 'Criterion' | correspondence
-Models=peridynamics & Peridynamics/Surface correction=fictitious nodes & Material/Critical stress=1 & Material/Criterion=von mises => 'Criterion' | beyond the body | 'fictitious nodes'
+Models=peridynamics & Boundary conditions/Displacement=bottom: 0, 0 & Boundary conditions/Symmetry=left & Material/Critical stress=1 & Material/Criterion=von mises => 'Criterion' | beyond the body | 'Symmetry'
 Elasticity/Breaking=at rest => 'Breaking' in section 'Elasticity' | bonds that break | 'Fracture energy'
 Elasticity/Kinematics=full => 'Kinematics' | 'linear' | 'conjugate gradients'
 Elasticity/Preconditioner=none => 'Preconditioner' | conjugate gradients | 'linear'

@@ -160,9 +160,10 @@ namespace PeriDeal
   {
     if (bonds.yielding())
       bonds.yielding()->find(u);
-    const Vector        tau    = bonds.by_family ? Vector(bonds.families.nodes().partitioner()) :
-                                                   nodal_tensions(bonds, u).front();
-    const auto          stress = nodal_stresses(bonds, body, nodal_tensors(bonds, u, tau));
+    const std::vector<Vector> tensions =
+      bonds.by_family ? std::vector<Vector>(1, Vector(bonds.families.nodes().partitioner())) :
+                        nodal_tensions(bonds, u);
+    const auto stress = nodal_stresses(bonds, body, nodal_tensors(bonds, u, tensions.front()));
     std::vector<Vector> components(SymmetricTensor<2, 3>::n_independent_components,
                                    Vector(bonds.families.nodes().partitioner()));
     for (unsigned int k = 0; k < components.size(); ++k)

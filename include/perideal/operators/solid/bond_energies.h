@@ -58,6 +58,8 @@ namespace PeriDeal
     void take_state(const std::vector<Vector> &values) override
     {
       state = values;
+      for (const Vector &of : state) // which copies of vectors are without
+        of.update_ghost_values();
     }
 
     /** Bonds that are pressed do not break. */
