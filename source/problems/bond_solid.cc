@@ -345,7 +345,8 @@ namespace PeriDeal
           {
             const std::vector<double> lost = damage();
             list.add("damage", [&](const unsigned int i) { return lost[i]; });
-            if (scene.material.scatter)
+            if (scene.material.scatter &&
+                scene.material.law.breaking.criterion == BreakCriterion::stretch)
               list.add("critical_stretch", [&](const unsigned int i) {
                 return states->breaking().critical_stretches()[i];
               });
@@ -442,7 +443,7 @@ namespace PeriDeal
           }
         lowest  = Utilities::MPI::min(lowest, handler.get_communicator());
         highest = Utilities::MPI::max(highest, handler.get_communicator());
-        list.emplace_back("critical stretch",
+        list.emplace_back(states->breaking().name_of_limit(),
                           number_text(lowest) +
                             (highest > lowest ? " to " + number_text(highest) : ""));
         return list;
@@ -508,7 +509,7 @@ namespace PeriDeal
 
       std::string note_on_critical_stretch() const
       {
-        if (!states->brittle() || scene.material.fracture_energy || scene.material.scatter ||
+        if (!states->brittle() || !scene.material.critical_stretch || scene.material.scatter ||
             has_forces_of_its_own() || !scene.domain.has_lattice() ||
             states->bonds().families.nodes().n_owned() == 0)
           return {};
@@ -556,37 +557,7 @@ namespace PeriDeal
 
       std::vector<SymmetricTensor<2, 3>> nodal_stress(const NodalTensors<dim> &tensors) const
       {
-        std::vector<SymmetricTensor<2, 3>> stress;
-        const Vector                      &change = states->temperature_change();
-        // Of isotropic bodies that may be warm full_stress() knows.
-        const bool knows_out_of_plane = states->bonds().correspondence() &&
-                                        scene.elasticity.plane == PlaneState::strain &&
-                                        (scene.material.law.kind != SolidLaw::linear ||
-                                         !scene.material.law.orthotropy.young.empty());
-        for (unsigned int i = 0; i < node_set->n_owned(); ++i)
-          {
-            const Point<dim> &p = node_set->position(i);
-            stress.push_back(full_stress(tensors.stress[i],
-                                         scene,
-                                         p,
-                                         change.size() > 0 ?
-                                           change.local_element(i) :
-                                           scene.elasticity.temperature_change.value(p)));
-            if (dim == 2 && scene.elasticity.plane == PlaneState::strain &&
-                states->bonds().yielding())
-              stress.back()[2][2] = states->bonds().yielding()->out_of_plane(i);
-            if (dim == 2 && knows_out_of_plane)
-              stress.back()[2][2] = tensors.out_of_plane[i];
-            if constexpr (dim == 2)
-              if (scene.material.law.kind == SolidLaw::viscoelastic)
-                {
-                  // In plane strain, cold; the bulk modulus does not relax.
-                  stress.back()[2][2] =
-                    3. * scene.material.moduli(p).bulk * trace(tensors.strain[i]) -
-                    stress.back()[0][0] - stress.back()[1][1];
-                }
-          }
-        return stress;
+        return nodal_stresses(states->bonds(), scene, tensors);
       }
 
       /** Of the temperature where it is computed, else none. */

@@ -60,7 +60,7 @@ namespace PeriDeal
       if (heat.time.steady)
         return;
       heat.material.require_storage();
-      if (!scene.material.fracture_energy && !scene.material.critical_stretch)
+      if (!scene.material.breaks())
         return;
       heat.broken_bonds_conduct = scene.elasticity.broken_bonds_conduct;
       // What the solid's cracks part must not conduct once the bonds ahead of them have broken.

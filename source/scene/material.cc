@@ -43,6 +43,8 @@ namespace PeriDeal
     const std::string two =
       " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
     const std::string formula = ": a number or a formula of x, y, z.";
+    const std::string of_changes =
+      ": a number or a formula of x, y, z, the time t and T, the temperature where it is computed, else the Temperature change that is given (section `Elasticity`).";
 
     /** An entry whose text the section itself reads. */
     struct PlainEntry
@@ -56,6 +58,25 @@ namespace PeriDeal
     const std::vector<PlainEntry> &entries_of_laws()
     {
       static const std::vector<PlainEntry> list = {
+        {"Critical stress",
+         EntryType::formula,
+         "",
+         "force/length^2",
+         "With `Criterion = principal stress` or `von mises`: the stress at which bonds break" +
+           of_changes},
+        {"Unbreakable",
+         EntryType::formula,
+         "0",
+         "1",
+         "Bonds with an end where this is greater than 0 never break, by whatever criterion: grips, supports, what is beneath a load" +
+           formula +
+           " Of a phase: `name: 1` in `Phases`. Cracks of section `Cracks` cut them all the same."},
+        {"Tensile strength",
+         EntryType::formula,
+         "",
+         "force/length^2",
+         "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
+           " The area under stress over opening is Fracture energy."},
         {"Relaxation",
          EntryType::list,
          "",
@@ -123,18 +144,20 @@ namespace PeriDeal
     entry("Thermal expansion", "0") =
       "Strain per `Temperature change` (section `Elasticity`)" + formula;
     entry("Fracture energy") =
-      "Energy per area of a new crack" + formula +
-      " The stretch at which bonds break follows from it. Without this and Critical stretch they do not break.";
+      "Energy per area of a new crack" + of_changes +
+      " The stretch (or Criterion) at which bonds break follows from it. Without this and Critical stretch they do not break.";
     entry("Critical stretch") =
-      "Relative extension at which a bond breaks, instead of Fracture energy" + formula;
+      "Relative extension at which a bond breaks, instead of Fracture energy" + of_changes;
+    declare(law.breaking.criterion, // its other entries: entries_of_laws()
+            "Criterion",
+            "stretch",
+            {"stretch", "energy", "principal stress", "von mises"}) =
+      "When a bond breaks. `stretch`: by Critical stretch or Fracture energy; `energy`: when what it has stored exceeds its share of Fracture energy (in peridynamics, not with `correspondence`); `principal stress`, `von mises`: when the mean of that stress at both of its ends exceeds Critical stress (in peridynamics). Always only bonds that are stretched.";
     declare(law.kind,
             "Law",
             "linear",
             {"linear", "viscoelastic", "plastic", "softening", "formula", "hyperelastic", "user"}) =
       "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `hyperelastic`: rubber, a compressible neo-Hookean body of the two moduli, in finite elements and correspondence with `Kinematics = full` (section `Elasticity`); `user`: by a program of your own (`User law`), a UMAT in finite elements and correspondence, a law of bonds in `state-based` and `bond-based` peridynamics.";
-    entry("Tensile strength") =
-      "With `Law = softening`: the stress at which a row of bonds begins to open" + formula +
-      " The area under stress over opening is Fracture energy.";
     entry("Yield stress") =
       "With `Law = plastic`: the von Mises stress from which on the body yields" + formula +
       " A phase that shall stay elastic gets a large one.";
@@ -199,12 +222,71 @@ namespace PeriDeal
   }
 
 
-  void Material::parse_scatter()
+  namespace
   {
+    /** Entries of a criterion, or that another one has not. */
+    void refuse_criterion(const Material &material)
+    {
+      const Material::Law::Breaking &breaking = material.law.breaking;
+      const std::string              name     = "'Criterion = " + material.text("Criterion") + "'",
+                        stress = "Critical stress", energy = "Fracture energy",
+                        stretch = "Critical stretch";
+      material.refuse(breaking.critical_stress && !breaking.by_stress(),
+                      stress,
+                      "is for 'Criterion = principal stress' and 'von mises'; 'Criterion' is '" +
+                        material.text("Criterion") + "'. Leave one of them out.");
+      material.refuse(breaking.by_stress() && !breaking.critical_stress,
+                      stress,
+                      "is empty, which " + name + " needs.");
+      material.refuse(breaking.by_stress() && material.fracture_energy,
+                      energy,
+                      "has no effect with " + name + ", which takes 'Critical stress'.");
+      material.refuse(breaking.criterion != BreakCriterion::stretch && material.critical_stretch,
+                      stretch,
+                      "has no effect with " + name + ", which takes '" +
+                        (breaking.by_stress() ? stress : energy) + "'.");
+      material.refuse(breaking.criterion == BreakCriterion::energy && !material.fracture_energy,
+                      energy,
+                      "is empty, which " + name + " needs.");
+      material.refuse(
+        breaking.criterion != BreakCriterion::stretch && material.law.softens(),
+        "Criterion",
+        "found '" + material.text("Criterion") +
+          "', but bonds of 'Law = softening' soften by their stretch. Leave one of them out.");
+      material.refuse(breaking.criterion == BreakCriterion::energy &&
+                        material.law.kind != SolidLaw::linear,
+                      "Criterion",
+                      "found 'energy', which is what bonds of 'Law = linear' store; 'Law' is '" +
+                        material.text("Law") + "'. Use another criterion.");
+      material.refuse(breaking.criterion != BreakCriterion::stretch &&
+                        material.is_given("Interfaces"),
+                      "Interfaces",
+                      "break by the stretch of their bonds; 'Criterion' is '" +
+                        material.text("Criterion") + "'. Leave one of them out.");
+      material.refuse(
+        breaking.unbreakable && !material.breaks(),
+        "Unbreakable",
+        "is for bodies whose bonds break: give 'Fracture energy' or 'Critical stretch', too, or leave it out.");
+    }
+  } // namespace
+
+
+  void Material::parse_breaking(const Physics physics)
+  {
+    fracture_energy              = optional_property("Fracture energy", physics);
+    critical_stretch             = optional_property("Critical stretch", physics);
+    law.breaking.critical_stress = optional_property("Critical stress", physics);
+    refuse(fracture_energy && critical_stretch,
+           "Critical stretch",
+           "'Fracture energy' is given, too: give one of the two.");
+    law.breaking.unbreakable.reset();
+    if (is_given("Unbreakable") || phases.gives("Unbreakable"))
+      law.breaking.unbreakable = phases.property("Unbreakable", read("Unbreakable", physics));
+    refuse_criterion(*this);
     scatter.reset();
     const bool modulus = !text("Weibull modulus").empty(), seed = !text("Strength seed").empty();
     refuse(
-      modulus && !fracture_energy && !critical_stretch,
+      modulus && !breaks(),
       "Weibull modulus",
       "is for bonds that break: give 'Fracture energy' or 'Critical stretch', too, or leave it out.");
     refuse(
@@ -327,6 +409,10 @@ namespace PeriDeal
         !material.fracture_energy,
         "Fracture energy",
         "is empty, which 'Law = softening' needs: the area under the stress over the opening.");
+      material.refuse(
+        material.fracture_energy->changes(),
+        "Fracture energy",
+        "depends on t or T, which bonds of 'Law = softening' do not know; known variables here: x, y, z.");
     }
 
 
@@ -492,16 +578,11 @@ namespace PeriDeal
       "'harmonic' follows each bond through the phases and cannot have a 'Conductivity' with T; use 'arithmetic' or 'minimum'.");
 
     thermal_expansion    = property("Thermal expansion");
-    fracture_energy      = optional_property("Fracture energy", physics);
-    critical_stretch     = optional_property("Critical stretch", physics);
     law.tensile_strength = optional_property("Tensile strength", physics);
     law.yield_stress     = optional_property("Yield stress", physics);
     law.hardening        = property("Hardening modulus");
-    refuse(fracture_energy && critical_stretch,
-           "Critical stretch",
-           "'Fracture energy' is given, too: give one of the two.");
-    parse_scatter();
-    for (const std::string entry : {"Law", "Softening"})
+    parse_breaking(physics);
+    for (const std::string entry : {"Law", "Softening", "Criterion"})
       refuse_unless_elastic(entry, physics);
     if (law.kind == SolidLaw::user && law.user.of_bonds)
       law.kind = SolidLaw::user_bonds;

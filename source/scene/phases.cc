@@ -236,6 +236,15 @@ namespace PeriDeal
   }
 
 
+  bool MaterialProperty::depends_on_time() const
+  {
+    return elsewhere.depends_on_time() ||
+           std::any_of(of_regions.begin(), of_regions.end(), [](const auto &formula) {
+             return formula && formula->depends_on_time();
+           });
+  }
+
+
   const Expression &MaterialProperty::formula(const int region) const
   {
     return region >= 0 && of_regions[region] ? *of_regions[region] : elsewhere;
@@ -255,8 +264,10 @@ namespace PeriDeal
       {"Young modulus", "force/length^2", false, true, false, true},
       {"Poisson ratio", "1", false, true, false, false},
       {"Thermal expansion", "1/temperature", false, true, false, false},
-      {"Fracture energy", "energy/length^2", false, true, false, true},
-      {"Critical stretch", "1", false, true, false, true},
+      {"Fracture energy", "energy/length^2", false, true, false, true, true},
+      {"Critical stretch", "1", false, true, false, true, true},
+      {"Critical stress", "force/length^2", false, true, false, true, true},
+      {"Unbreakable", "1", false, true, false, false},
       {"Tensile strength", "force/length^2", false, true, false, true},
       {"Yield stress", "force/length^2", false, true, false, true},
       {"Hardening modulus", "force/length^2", false, true, false, false}};
@@ -282,13 +293,15 @@ namespace PeriDeal
                               const std::string   &where)
   {
     const bool        knows_temperature = entry.with_temperature && !(elastic && entry.elasticity);
-    const std::string variables         = knows_temperature ? "x, y, z, T" : "x, y, z";
+    const std::string variables         = entry.changes     ? "x, y, z, t, T" :
+                                          knows_temperature ? "x, y, z, T" :
+                                                              "x, y, z";
     const Expression  formula(text, where, variables, true);
-    if (formula.depends_on_time())
+    if (formula.depends_on_time() && !entry.changes)
       entry_error(where, "'" + text + "' depends on t; known variables here: " + variables + ".");
-    if (formula.depends_on_temperature() && !entry.with_temperature)
+    if (formula.depends_on_temperature() && !entry.with_temperature && !entry.changes)
       entry_error(where, "'" + text + "' depends on T; known variables here: x, y, z.");
-    if (formula.depends_on_temperature() && elastic && entry.elasticity)
+    if (formula.depends_on_temperature() && elastic && entry.elasticity && !entry.changes)
       entry_error(
         where,
         "'" + text +
@@ -312,7 +325,10 @@ namespace PeriDeal
     for (const MaterialEntry &entry : material_entries())
       declare(entry.name, EntryType::list, "", entry.unit) =
         (entry.name == "Conductivity" ? "Thermal conductivity" : entry.name) +
-        " of each phase: `name: formula of x, y, z" + (entry.with_temperature ? ", T" : "") +
+        " of each phase: `name: formula of x, y, z" +
+        (entry.changes          ? ", t, T" :
+         entry.with_temperature ? ", T" :
+                                  "") +
         "`, several separated by `;`. A phase that is not named here has the value of section `Material`.";
     for (const OrthotropicEntry &entry : orthotropic_entries())
       declare(entry.name, EntryType::list, "", entry.unit) =

@@ -356,6 +356,33 @@ namespace PeriDeal
   }
 
 
+  /** Criteria and what they are not for. */
+  template <int dim>
+  void refuse_breaking(const Scene<dim> &scene)
+  {
+    const Material                &material = scene.material;
+    const Material::Law::Breaking &breaking = material.law.breaking;
+    const bool                     is_other = breaking.criterion != BreakCriterion::stretch;
+    scene.elasticity.refuse(
+      is_other && scene.elasticity.text("Crack direction") == "mean tension",
+      "Crack direction",
+      "found 'mean tension', which is for 'Criterion = stretch' in section 'Material', where 'Criterion' is '" +
+        material.text("Criterion") + "'. Leave one of them out.");
+    const bool has_images = scene.peridynamics.completes_families() ||
+                            !scene.boundary_conditions.symmetry.empty();
+    material.refuse(
+      is_other && has_images,
+      "Criterion",
+      "found '" + material.text("Criterion") +
+        "', which knows nothing of nodes beyond the body ('Symmetry' in section 'Boundary conditions', 'Surface correction = fictitious nodes' in 'Peridynamics'). Leave them out, or use 'stretch'.");
+    material.refuse(
+      breaking.criterion == BreakCriterion::energy &&
+        scene.elasticity.model == ElasticModel::correspondence,
+      "Criterion",
+      "found 'energy', which bonds of 'Model = correspondence' (section 'Elasticity') do not have by themselves. Use 'stretch', 'principal stress' or 'von mises'.");
+  }
+
+
   template <int dim>
   void refuse_deformation(const Scene<dim> &scene)
   {
@@ -373,7 +400,7 @@ namespace PeriDeal
       "'crack scaling' without 'Models = coupled' has no effect with 'Physics = elasticity'; use 'none', 'energy' or 'moments'.");
     material.refuse(
       none && material.breaks(),
-      material.fracture_energy ? "Fracture energy" : "Critical stretch",
+      name_of_limit(material),
       "has no effect: finite elements do not break. Add 'peridynamics' or 'coupled' to 'Models', or leave the entry out.");
     material.refuse(material.scatter && runs(scene, ModelKind::coupled),
                     "Weibull modulus",
@@ -383,6 +410,7 @@ namespace PeriDeal
       "Breaking",
       "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
     refuse_crack_direction(scene);
+    refuse_breaking(scene);
     scene.elasticity.refuse(
       scene.elasticity.contact_is_asked() && !bonds &&
         (none || !scene.coupling.exchanges() || scene.cracks.on_faces()),
@@ -483,6 +511,8 @@ namespace PeriDeal
       refuse(
         !material.breaks(),
         "nothing breaks: give 'Fracture energy' in section 'Material' (or 'Critical stretch', with 'Horizon' in section 'Peridynamics' as a length).");
+      refuse(limit_of_bonds(material).changes(),
+             "'" + name_of_limit(material) + "' in section 'Material' depends on t or T.");
       refuse(!scene.elasticity.is_static(),
              "'Solver' in section 'Elasticity' is 'dynamics'; it is for bodies at rest.");
       refuse(

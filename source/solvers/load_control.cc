@@ -31,9 +31,9 @@ namespace PeriDeal
   }
 
 
-  void LoadControl::take_back(Vector &u)
+  void LoadControl::take_back(Vector &u, const double t)
   {
-    const double most = op.stretch_over_critical(u);
+    const double most = op.stretch_over_critical(u, t);
     if (most <= 1. + span)
       return;
     op.stepping.load_factor = (1. + span) / most;

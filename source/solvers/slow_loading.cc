@@ -247,7 +247,7 @@ namespace PeriDeal
     check_inversion(u, t);
     op.linearize(u);
     if (breaks.control)
-      breaks.control->take_back(u);
+      breaks.control->take_back(u, t);
   }
 
 
@@ -273,7 +273,7 @@ namespace PeriDeal
     if (breaks.control)
       return breaks.control->break_bonds(u, t, op.energy(u), so_far.dissipated);
     // What is stretched much too far would break all at once in a motion.
-    const double most  = breaks.motion ? op.stretch_over_critical(u) : 0.;
+    const double most  = breaks.motion ? op.stretch_over_critical(u, t) : 0.;
     const bool   moves = most > 0. && most < shatters;
     if (op.break_bonds(u, t, share) == 0)
       return false;
@@ -308,7 +308,7 @@ namespace PeriDeal
       }
     breaking.is_open = false;
     if (options.divides_steps && op.brittle())
-      breaking.most = op.stretch_over_critical(u);
+      breaking.most = op.stretch_over_critical(u, t);
     if (!breaking.any)
       return;
     op.unbalanced(memory.unbalanced, u, t);
@@ -350,7 +350,7 @@ namespace PeriDeal
     if (!options.divides_steps || !op.brittle())
       return {end, 0.};
     const double begins = breaks.motion ? begins_in_motion : begins_at_rest;
-    double       most   = op.stretch_over_critical(u);
+    double       most   = op.stretch_over_critical(u, t);
     while (most > begins && end - reached.time > shortest * (breaking.goal - reached.time))
       {
         // Were it linear in t. It is convex where u is: at most this, then.
@@ -359,7 +359,7 @@ namespace PeriDeal
         end                 = reached.time + part * (end - reached.time);
         u.sadd(part, 1. - part, before.state);
         solve(u, end);
-        most = op.stretch_over_critical(u);
+        most = op.stretch_over_critical(u, end);
       }
     return {end, most};
   }

@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bonds that break: strength against Griffith, energies, motion.
 
-    fracture.py plate | beside | interfaces | block | bend | mesh | motion | steps | symmetry | oblique | straight | scatter
+    fracture.py plate | beside | interfaces | block | bend | mesh | motion | steps | symmetry | oblique | straight | scatter | criteria
     fracture.py fine_plate | fine_block | fine_motion | more_oblique      the scenes on their own lattices; the others take one of half the cells a side
 
 Bounds that follow from no theory are at most 1.6 times the gap that was measured; the comment beside them says which.
@@ -338,11 +338,9 @@ def tilted(angle, half=0.3):
 
 def turned(run, angle, half=0.3, shown=0.35, model=PD):
     """By how many degrees each half of the crack has left its direction: total least squares of the damaged nodes beyond the tip, within 0.45 of it."""
-    import h5py
     import numpy as np
 
-    with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][model])) as file:
-        nodes, damage = file["nodes"][:, :2], file["damage"][:].ravel()
+    nodes, damage = nodes_and_damage(run, model)
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     turns = []
     for side in (1, -1):
@@ -404,6 +402,52 @@ def scatter():
     print(f"strength with scatter: {found}")
 
 
+STRENGTH = "prm/fracture/critical_stress.prm"
+# Uniform: no hole, no contraction.
+UNIFORM = {**QUIET, "Domain/Shape": "box", "Domain/Nodes": "vertices", "Domain/Cells": "10, 20", "Material/Poisson ratio": "0", "Elasticity/Model": "correspondence", "Solver/Tolerance": "1e-12",
+           "Boundary conditions/Displacement": "top: 0, 0.004*t; bottom: 0, -0.004*t"}
+STRETCHED = {**UNIFORM, "Material/Criterion": "stretch", "Material/Critical stress": ""}
+
+
+def first_break(overrides):
+    return run_scene(STRENGTH, overrides).model(PD)["first broken bonds"]
+
+
+def nodes_and_damage(run, model=PD):
+    import h5py
+
+    with h5py.File(os.path.join(run.folder, run.summary["fields"][-1]["files"][model])) as file:
+        return file["nodes"][:, :2], file["damage"][:].ravel()
+
+
+def criteria():
+    """A strength that is given, limits of time and temperature at rest and in motion, ends that never break."""
+    table = Comparison("Bonds that break by other criteria")
+    # A strain of 0.004 t.
+    for criterion in ("principal stress", "von mises"):
+        run = run_scene(STRENGTH, {**UNIFORM, "Material/Criterion": criterion, "Material/Critical stress": "0.4"})
+        table.add(f"{criterion}: stress of the plate over its strength", strength(run, 1) / 0.4, 1, absolute=0.01)
+        energy_kept(table, criterion, run, 1e-9)
+    table.add("strength that falls in time: time of the first break", first_break({**UNIFORM, "Material/Critical stress": "0.8 - 0.5*t"}), 0.8 / 1.3, absolute=0.006)
+    falls, warm = "0.002 - 0.001*t", {"Elasticity/Temperature change": "80"}
+    for what, more in (("of time", {"Material/Critical stretch": falls}),
+                       ("of time, in motion", {"Material/Critical stretch": falls, "Elasticity/Solver": "dynamics", "Elasticity/Breaking": "auto", "Material/Density": "1.0", "Time/Time step": "0.002",
+                                               "Initial and source/Initial velocity": "0, 0.004*y", "Time/End time": "0.5"}),
+                       ("of temperature", {**warm, "Material/Critical stretch": "0.0032*(1 - T/160)"})):
+        table.add(f"critical stretch {what}: time of the first break", first_break({**STRETCHED, **more}), 0.4, absolute=0.004)
+    # The hole breaks, the grips do not, whatever the criterion.
+    coarse = {**QUIET, "Domain/Cells": "20, 40", "Solver/Tolerance": "1e-12", "Boundary conditions/Displacement": "top: 0, 0.008*t; bottom: 0, -0.008*t"}
+    for criterion, limit in (("principal stress", {}), ("energy", {"Material/Critical stress": "", "Material/Fracture energy": "2e-4", "Peridynamics/Kernel": "constant"})):
+        run = run_scene(STRENGTH, {**coarse, "Material/Criterion": criterion, **limit, "Output/Fields": "hdf5", "Output/Write at": "1"})
+        places, damage = nodes_and_damage(run)
+        in_grips = abs(places[:, 1]) > 0.8 + 3 * 0.05
+        check(in_grips.any() and not damage[in_grips].any() and damage.max() > 0.4, f"{criterion}: damage in the grips {damage[in_grips].max()}, elsewhere {damage.max()}")
+        if criterion == "energy": # by stresses what has lost bonds has less stress, and the rest of its bonds stay
+            check_less(abs(run.model(PD)["boundary force"]["top"][1]), 1e-2 * largest(run, "force on top in y"), f"{criterion}: force left")
+        energy_kept(table, f"plate with a hole, {criterion}", run, 1e-7)
+    table.show()
+
+
 if __name__ == "__main__":
-    run_parts(plate, beside, interfaces, block, bend, mesh, motion, steps, symmetry, oblique, straight, scatter,
+    run_parts(plate, beside, interfaces, block, bend, mesh, motion, steps, symmetry, oblique, straight, scatter, criteria,
               fine_plate=fine_plate, fine_block=fine_block, fine_motion=fine_motion, more_oblique=more_oblique)

@@ -317,6 +317,10 @@ def breaking():
     for way in ("in motion", "at rest"):
         compare(f"breaking {way}", "prm/fracture/centre_crack.prm", {**fracture.COARSE, "Elasticity/Breaking": way},
                 {"totals: broken bonds": 0, "totals: energy dissipated": 1e-9, "totals: strain energy": 1e-9}, ranks=(4,), least_broken=50)
+    energy = {"Material/Criterion": "energy", "Material/Critical stress": "", "Material/Fracture energy": "2e-4*(1 - 0.2*t)", "Peridynamics/Kernel": "constant"}
+    for what, more in (("stress", {"Material/Critical stress": "1 - 0.2*t"}), ("energy", energy)):
+        compare(f"breaking by {what}", fracture.STRENGTH, {"Domain/Cells": "20, 40", "Solver/Tolerance": "1e-12", "Output/Fields": "none", "Output/Write at": "", **more},
+                {"totals: broken bonds": 0, "totals: energy dissipated": 1e-9, "totals: strain energy": 1e-9}, ranks=(2, 4), least_broken=50)
     for model, cells in ((PD, "24, 24"), (COUPLED, "25, 25")):
         compare(f"across the mean tension, {model}", "prm/fracture/oblique_crack_growth.prm",
                 {"Models": model, "Domain/Cells": cells, **({"Domain/Nodes": "vertices", "Coupling/Zone": "follow"} if model == COUPLED else {}),

@@ -76,6 +76,7 @@ SCENES = {
                 ("fracture/centre_crack.prm", {"Domain/Cells": "20, 40", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-13", "Elasticity/Breaking": "at rest"}, IMPLICIT),
                 ("fracture/oblique_crack_growth.prm", {"Domain/Cells": "24, 24", "Peridynamics/Horizon ratio": "3", "Solver/Tolerance": "1e-13", "Elasticity/Crack direction": "mean tension"}, IMPLICIT),
                 ("fracture/scattered_strength.prm", {"Domain/Cells": "16, 16", "Solver/Tolerance": "1e-13"}, IMPLICIT),
+                ("fracture/critical_stress.prm", {"Domain/Cells": "16, 32", "Solver/Tolerance": "1e-13", "Material/Critical stress": "1 - 0.2*t"}, IMPLICIT),
                 ("elasticity/growing_crack.prm", {"Domain/Cells": "66, 11", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("fracture/branching_crack.prm", {"Domain/Cells": "60, 24", "Time/Stepper": "newmark", "Time/Time step": "2e-7", "Solver/Tolerance": "1e-13"}, IMPLICIT)],
 }

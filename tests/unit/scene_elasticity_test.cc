@@ -215,7 +215,21 @@ Material/Phases/Thermal expansion=rim: -1e-5 =>
     expect_elastic_faults({}, R"(
 Material/Fracture energy=10 & Material/Critical stretch=1e-3 => Material/Critical stretch | 'Fracture energy' is given
 Material/Fracture energy=0 => Material/Fracture energy | greater than 0
-Material/Critical stretch=t => Material/Critical stretch | depends on t
+Material/Critical stretch=1e-3*(1 + t/T) =>
+Material/Critical stretch=1e-3*(1 + s) => Material/Critical stretch | 's' | x, y, z, t, T
+Material/Criterion=energy => Material/Fracture energy | is empty | 'Criterion = energy'
+Material/Criterion=energy & Material/Critical stretch=1 => Material/Critical stretch | no effect | 'Fracture energy'
+Material/Criterion=principal stress => Material/Critical stress | is empty | principal stress
+Material/Criterion=von mises & Material/Critical stress=0 => Material/Critical stress | greater than 0
+Material/Criterion=von mises & Material/Critical stress=1 & Material/Fracture energy=1 => Material/Fracture energy | no effect | 'Critical stress'
+Material/Criterion=von mises & Material/Critical stress=1 & Material/Unbreakable=x =>
+Material/Critical stress=1 => Material/Critical stress | 'Criterion = principal stress' | Leave one
+Material/Unbreakable=x => Material/Unbreakable | bonds break | 'Fracture energy'
+Material/Unbreakable=t & Material/Critical stretch=1 => Material/Unbreakable | depends on t
+Material/Phases/Unbreakable=grip: 1 & Material/Critical stretch=1 => Material/Phases/Unbreakable | no phase 'grip'
+Material/Law=softening & Material/Tensile strength=1 & Material/Fracture energy=1 & Material/Criterion=energy => Material/Criterion | soften by their stretch
+Material/Law=softening & Material/Tensile strength=1 & Material/Fracture energy=1 + t => Material/Fracture energy | depends on t or T
+Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Material/Fracture energy=1 & Material/Criterion=energy => Material/Criterion | 'Law = linear'
 Elasticity/Crack direction=mean tension => Elasticity/Crack direction | bonds that break
 Material/Critical stretch=1e-3 & Elasticity/Crack direction=mean tension => Elasticity/Crack direction | there is none
 Material/Critical stretch=1e-3 & Elasticity/Crack direction=mean tension & Elasticity/Solver=dynamics => Elasticity/Crack direction | bodies at rest

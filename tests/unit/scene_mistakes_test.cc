@@ -176,6 +176,9 @@ Initial and source/Initial velocity=1, 0 => 'Initial velocity' | no effect | 'dy
 Boundary conditions/Displacement=left: 0, 0; right: t, 0 & Time/Steady=true => 'Steady' | depend on t
 Models=coupled & Material/Critical stretch=0.1 & Coupling/Zone=cracks: 1 => 'Zone' | is empty | 'follow'
 Material/Weibull modulus=10 & Material/Strength seed=1 => 'Weibull modulus' | bonds that break | 'Fracture energy' | 'Critical stretch'
+Models=coupled & Material/Fracture energy=1 & Material/Criterion=energy & Coupling/Zone=follow => 'Criterion' | 'Models = peridynamics' | 'stretch'
+Models=peridynamics & Elasticity/Model=correspondence & Material/Fracture energy=1 & Material/Criterion=energy => 'Criterion' | correspondence
+Models=peridynamics & Boundary conditions/Displacement=bottom: 0, 0 & Boundary conditions/Symmetry=left & Material/Critical stress=1 & Material/Criterion=von mises => 'Criterion' | beyond the body | 'Symmetry'
 Elasticity/Breaking=at rest => 'Breaking' in section 'Elasticity' | bonds that break | 'Fracture energy'
 Elasticity/Dissipation step=0.1 => 'Dissipation step' | 'Breaking = controlled'
 Material/Critical stretch=0.1 & Elasticity/Breaking=controlled & Elasticity/Dissipation step=2 => 'Dissipation step' in section 'Elasticity' | 2 | less than 1

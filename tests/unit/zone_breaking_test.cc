@@ -225,7 +225,7 @@ namespace
     Vector          u = body.values(
       [strain](const Point<dim> &p) { return strain * p[0] * Point<dim>::unit_vector(0); });
     body.op().distribute(u, 0.);
-    return body.op().stretch_over_critical(u);
+    return body.op().stretch_over_critical(u, 0.);
   }
 
 

@@ -134,6 +134,15 @@ namespace PeriDeal
     user_bonds // the same entry, of bonds
   };
 
+  /** What says when a bond breaks. */
+  enum class BreakCriterion
+  {
+    stretch,
+    energy,           // stored in the bond
+    principal_stress, // the largest one of its ends
+    von_mises
+  };
+
   /** SofteningCurve. */
   enum class Softening
   {

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -55,6 +56,20 @@ namespace PeriDeal
       std::optional<MaterialProperty> tensile_strength;
       std::optional<MaterialProperty> yield_stress; // plastic
       MaterialProperty                hardening;    // of the yield stress over plastic strain
+
+      /** When bonds break, besides Fracture energy or Critical stretch. */
+      struct Breaking
+      {
+        BreakCriterion                  criterion = BreakCriterion::stretch;
+        std::optional<MaterialProperty> critical_stress;
+        std::optional<MaterialProperty> unbreakable; // greater than 0 where bonds never break
+
+        bool by_stress() const
+        {
+          return criterion == BreakCriterion::principal_stress ||
+                 criterion == BreakCriterion::von_mises;
+        }
+      } breaking;
 
       /** A shared library with a law of stresses or of bonds. */
       struct User
@@ -100,7 +115,7 @@ namespace PeriDeal
     /** Bonds may break. */
     bool breaks() const
     {
-      return fracture_energy || critical_stretch;
+      return fracture_energy || critical_stretch || law.breaking.critical_stress;
     }
 
     bool uniform_conductivity() const
@@ -162,7 +177,7 @@ namespace PeriDeal
     std::optional<MaterialProperty> optional_property(const std::string &entry,
                                                       const Physics      physics) const;
 
-    void parse_scatter();
+    void parse_breaking(const Physics physics);
 
     void parse_moduli(const unsigned int dim, const PlaneState plane);
 
@@ -181,6 +196,24 @@ namespace PeriDeal
 
     GivenModuli given;
   };
+
+
+  /** The entry that gives the limit of bonds. */
+  inline std::string name_of_limit(const Material &material)
+  {
+    return material.fracture_energy              ? "Fracture energy" :
+           material.law.breaking.critical_stress ? "Critical stress" :
+                                                   "Critical stretch";
+  }
+
+
+  /** The formula of that entry, of bonds that break. */
+  inline const MaterialProperty &limit_of_bonds(const Material &material)
+  {
+    return material.fracture_energy              ? *material.fracture_energy :
+           material.law.breaking.critical_stress ? *material.law.breaking.critical_stress :
+                                                   *material.critical_stretch;
+  }
 
 
   /** Section `Initial and source`. */

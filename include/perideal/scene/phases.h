@@ -121,9 +121,11 @@ namespace PeriDeal
      *                    moisture)
      */
     template <int dim>
-    double value(const dealii::Point<dim> &p, const double temperature = 0.) const
+    double value(const dealii::Point<dim> &p,
+                 const double              temperature = 0.,
+                 const double              t           = 0.) const
     {
-      return formula_at(p).value(p, 0., temperature);
+      return formula_at(p).value(p, t, temperature);
     }
 
     /** Expression::marked_temperatures() of the formula at a point. */
@@ -138,6 +140,15 @@ namespace PeriDeal
 
     /** T is in some formula. */
     bool depends_on_temperature() const;
+
+    /** t is in some formula. */
+    bool depends_on_time() const;
+
+    /** t or T is in some formula. */
+    bool changes() const
+    {
+      return depends_on_time() || depends_on_temperature();
+    }
 
     /** Formula of a region, or elsewhere (-1). */
     const Expression &formula(const int region) const;
@@ -162,6 +173,7 @@ namespace PeriDeal
     bool        diffusion, elasticity; // who takes it
     bool        with_temperature;      // T is a variable
     bool        positive;              // else of any sign
+    bool        changes = false;       // with elasticity t and T are variables
   };
 
   const std::vector<MaterialEntry> &material_entries();

@@ -43,7 +43,7 @@ namespace PeriDeal
     void take_forward(Vector &u);
 
     /** From the equilibrium under the whole loads to the one under those that bonds bear. */
-    void take_back(Vector &u);
+    void take_back(Vector &u, const double t);
 
     /**
      * Let bonds that are pressed again be whole, or, if there are none, the most stretched ones

@@ -6,6 +6,7 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/operators/solid/bond_breaking.h>
 #include <perideal/operators/solid/bond_softness.h>
+#include <perideal/operators/solid/solid_tensors.h>
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,27 @@ namespace PeriDeal
         limits[i] *= 1. - 1e-9; // what is found by other operations differs by round-off
       }
     bonds.forces.watch(std::move(limits));
+  }
+
+
+  template <int dim>
+  void BondBreaking<dim>::follow_body(const Vector &u, const double t)
+  {
+    const NodeQuantity asked   = criterion->asks_for();
+    bool               changed = criterion->take_time(t, this->temperatures);
+    if (asked != NodeQuantity::none)
+      {
+        criterion->take_state(asked == NodeQuantity::stresses ?
+                                nodal_stress_components(bonds, this->body, u) :
+                                nodal_tensions(bonds, u));
+        changed = true;
+      }
+    if (!changed)
+      return;
+    if (screen)
+      screen->find_limits();
+    if (bonds.kinematics.is_full() && !criterion->softens())
+      watch_limits();
   }
 
 
@@ -200,10 +222,11 @@ namespace PeriDeal
 
 
   template <int dim>
-  double BondBreaking<dim>::stretch_over_critical(const Vector &u)
+  double BondBreaking<dim>::stretch_over_critical(const Vector &u, const double t)
   {
     if (!criterion)
       return 0.;
+    follow_body(u, t);
     Assert(!bonds.rows.body.leaves_out(), ExcMessage("All bonds are to be stored."));
     double most = 0.;
     u.update_ghost_values();
@@ -292,6 +315,7 @@ namespace PeriDeal
   {
     if (!criterion)
       return {};
+    follow_body(u, t);
     u.update_ghost_values();
     this->find_all(
       [&] {

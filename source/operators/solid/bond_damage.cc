@@ -6,9 +6,12 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/point_order.h>
 #include <perideal/operators/solid/bond_damage.h>
+#include <perideal/operators/solid/bond_energies.h>
 #include <perideal/operators/solid/bond_strengths.h>
 #include <perideal/operators/solid/mean_tension_criterion.h>
 #include <perideal/operators/solid/softening_strengths.h>
+#include <perideal/operators/solid/stress_criterion.h>
+#include <perideal/operators/solid/unbreakable_ends.h>
 
 #include <algorithm>
 #include <utility>
@@ -21,16 +24,49 @@ namespace PeriDeal
   {
     /** The one list of criteria, each by its entries; null: no bonds break. */
     template <int dim>
-    std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds,
-                                                       const BodyParameters<dim> &body)
+    std::unique_ptr<DamageCriterion<dim>> breakable_criterion(const BreakableBonds<dim> &bonds,
+                                                              const BodyParameters<dim> &body)
     {
       if (bonds.material.law.softens())
         return std::make_unique<SofteningStrengths<dim>>(bonds);
       if (bonds.material.breaks() && body.elasticity.text("Crack direction") == "mean tension")
         return std::make_unique<MeanTensionCriterion<dim>>(bonds, body.cracks.cracks);
+      if (bonds.material.breaks() && bonds.material.law.breaking.by_stress())
+        return std::make_unique<StressCriterion<dim>>(bonds);
+      if (bonds.material.breaks() &&
+          bonds.material.law.breaking.criterion == BreakCriterion::energy)
+        return std::make_unique<BondEnergies<dim>>(bonds,
+                                                   body.peridynamics.sampling.volume_fraction);
       if (bonds.material.breaks())
         return std::make_unique<BondStrengths<dim>>(bonds);
       return nullptr;
+    }
+
+
+    template <int dim>
+    std::unique_ptr<DamageCriterion<dim>> criterion_of(const BreakableBonds<dim> &bonds,
+                                                       const BodyParameters<dim> &body)
+    {
+      std::unique_ptr<DamageCriterion<dim>> found = breakable_criterion(bonds, body);
+      if (found && bonds.material.law.breaking.unbreakable)
+        return std::make_unique<UnbreakableEnds<dim>>(bonds, std::move(found));
+      return found;
+    }
+
+
+    /** Given temperatures of owned nodes and ghosts; empty where they are not, or not known yet. */
+    template <int dim>
+    std::vector<double> given_temperatures(const BodyParameters<dim> &body,
+                                           const Nodes<dim>          &nodes,
+                                           const bool                 asked)
+    {
+      std::vector<double> list;
+      for (unsigned int i = 0;
+           i < nodes.n_local() && asked && !body.elasticity.computes_temperature;
+           ++i)
+        list.push_back(body.elasticity.reference_temperature +
+                       body.elasticity.temperature_change.value(nodes.position(i)));
+      return list;
     }
   } // namespace
 
@@ -41,7 +77,12 @@ namespace PeriDeal
                               std::function<CrossingEnergy(unsigned int)> &&crossing_energy)
     : families(families)
     , body(body)
-    , criterion(criterion_of<dim>({families, body.material, std::move(crossing_energy)}, body))
+    , knows_temperature(body.material.breaks() &&
+                        limit_of_bonds(body.material).depends_on_temperature())
+    , temperatures(given_temperatures(body, families.nodes(), knows_temperature))
+    , criterion(
+        criterion_of<dim>({families, body.material, std::move(crossing_energy), temperatures},
+                          body))
   {}
 
 

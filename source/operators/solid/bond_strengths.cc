@@ -11,6 +11,7 @@
 #include <perideal/operators/solid/bond_strengths.h>
 #include <perideal/operators/solid/weibull_field.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -101,7 +102,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < places.n_owned(); ++i)
       {
         const Point<dim> &p     = places.position(i);
-        const double      value = strength.value(p);
+        const double      value = strength.changes() ? 1. : strength.value(p);
         double           &s     = stretches.local_element(i);
         const double energy = of_energy || interfaces.any() ? bonds.crossing_energy(i).total() : 0.;
         stored.local_element(i) = energy;
@@ -122,8 +123,15 @@ namespace PeriDeal
       }
     stretches.update_ghost_values();
     nodes.assign(stretches.begin(), stretches.begin() + places.n_local());
+    if (strength.changes())
+      {
+        changing.emplace(bonds, nodes, of_energy); // which is what is not of the formula
+        nodes = changing->values();
+      }
     std::vector<double> lowest = nodes;
-    if (!strength.is_constant())
+    if (changing)
+      lowest.assign(nodes.size(), std::numeric_limits<double>::infinity());
+    else if (!strength.is_constant())
       find_weak(bonds.families, strength, lowest);
     if (interfaces.any())
       {
@@ -143,6 +151,8 @@ namespace PeriDeal
     std::copy_n(lowest.begin(), places.n_owned(), stretches.begin());
     stretches.update_ghost_values();
     least.assign(stretches.begin(), stretches.begin() + places.n_local());
+    least_across = least; // of changing ones
+    std::transform(nodes.begin(), nodes.end(), least_across.begin(), least.begin(), least_of);
   }
 
 

@@ -231,7 +231,7 @@ namespace PeriDeal
             std::vector<double> strains(positions.size());
             for (unsigned int i = 0; i < strains.size(); ++i)
               strains[i] = strain(i);
-            breaking->set_thermal(std::move(strains));
+            breaking->set_thermal(std::move(strains), this->temperature_change());
             energy = breaking->bonds.add_thermal(thermal_loads,
                                                  breaking->bonds.nodes(),
                                                  breaking->thermal_strains(),

@@ -47,10 +47,12 @@ namespace PeriDeal
     const Domain<dim>       &domain    = body.domain;
     const MaterialProperty  &expansion = body.material.thermal_expansion;
     const ElasticityControl &control   = body.elasticity;
-    control.refuse((control.computes_temperature || !is_zero(control.temperature_change)) &&
-                     expansion.is_constant() && expansion.value(Point<dim>()) == 0.,
-                   "Temperature change",
-                   "has no effect: 'Thermal expansion' in section 'Material' is 0.");
+    control.refuse(
+      (control.computes_temperature || !is_zero(control.temperature_change)) &&
+        expansion.is_constant() && expansion.value(Point<dim>()) == 0. &&
+        !(body.material.breaks() && limit_of_bonds(body.material).depends_on_temperature()),
+      "Temperature change",
+      "has no effect: 'Thermal expansion' in section 'Material' is 0.");
     domain.refuse(
       domain.has_extra_layers() && control.computes_temperature,
       "Extra layers",

@@ -99,6 +99,86 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  std::vector<SymmetricTensor<2, 3>> nodal_stresses(const SolidBonds<dim>     &bonds,
+                                                    const BodyParameters<dim> &body,
+                                                    const NodalTensors<dim>   &tensors)
+  {
+    const bool      in_strain = dim == 2 && body.elasticity.plane == PlaneState::strain;
+    const Material &material  = body.material;
+    const bool      knows_out_of_plane =
+      bonds.correspondence() &&
+      (material.law.kind != SolidLaw::linear || !material.law.orthotropy.young.empty());
+    std::vector<SymmetricTensor<2, 3>> list(tensors.stress.size());
+    for (unsigned int i = 0; i < list.size(); ++i)
+      {
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = a; b < dim; ++b)
+            list[i][a][b] = tensors.stress[i][a][b];
+        if (!in_strain)
+          continue;
+        double      &zz     = list[i][2][2];
+        const double sum    = trace(tensors.stress[i]);
+        const Moduli moduli = material.moduli(bonds.families.nodes().position(i));
+        if (bonds.yielding())
+          zz = bonds.yielding()->out_of_plane(i);
+        else if (knows_out_of_plane)
+          zz = tensors.out_of_plane[i];
+        else if (material.law.kind == SolidLaw::viscoelastic) // cold; bulk does not relax
+          zz = 3. * moduli.bulk * trace(tensors.strain[i]) - sum;
+        else
+          zz = moduli.poisson() * sum - moduli.young() * bonds.thermal[i] /
+                                          thermal_strain_factor(moduli, dim, body.elasticity.plane);
+      }
+    return list;
+  }
+
+
+  template <int dim>
+  std::vector<Vector> nodal_tensions(const SolidBonds<dim> &bonds, const Vector &u)
+  {
+    const auto         &layout = bonds.families.nodes().partitioner();
+    std::vector<Vector> values(2, Vector(layout));
+    u.update_ghost_values();
+    if (bonds.laws.volumetric && (bonds.kinematics.is_strained() || bonds.law.any()))
+      bonds.forces.find_tensions(values[0].begin(), u.begin());
+    else if (bonds.laws.volumetric)
+      bonds.sums.find_tensions(values[0].begin(), u.begin());
+    u.set_ghost_state(false);
+    for (unsigned int i = 0; i < bonds.families.nodes().n_owned(); ++i)
+      values[1].local_element(i) = bonds.laws.stiffness(i);
+    for (Vector &of : values)
+      of.update_ghost_values();
+    return values;
+  }
+
+
+  template <int dim>
+  std::vector<Vector> nodal_stress_components(const SolidBonds<dim>     &bonds,
+                                              const BodyParameters<dim> &body,
+                                              const Vector              &u)
+  {
+    if (bonds.yielding())
+      bonds.yielding()->find(u);
+    const std::vector<Vector> tensions =
+      bonds.by_family ? std::vector<Vector>(1, Vector(bonds.families.nodes().partitioner())) :
+                        nodal_tensions(bonds, u);
+    const auto stress = nodal_stresses(bonds, body, nodal_tensors(bonds, u, tensions.front()));
+    std::vector<Vector> components(SymmetricTensor<2, 3>::n_independent_components,
+                                   Vector(bonds.families.nodes().partitioner()));
+    for (unsigned int k = 0; k < components.size(); ++k)
+      {
+        for (unsigned int i = 0; i < stress.size(); ++i)
+          components[k].local_element(i) = stress[i].access_raw_entry(k);
+        components[k].update_ghost_values();
+      }
+    return components;
+  }
+
+
   PERIDEAL_INSTANTIATE_FUNCTION(nodal_dilatations);
   PERIDEAL_INSTANTIATE_FUNCTION(nodal_tensors);
+  PERIDEAL_INSTANTIATE_FUNCTION(nodal_stresses);
+  PERIDEAL_INSTANTIATE_FUNCTION(nodal_tensions);
+  PERIDEAL_INSTANTIATE_FUNCTION(nodal_stress_components);
 } // namespace PeriDeal

@@ -82,6 +82,7 @@ namespace PeriDeal
   void StateOperator<dim>::set_temperature_change(const Vector &nodal)
   {
     this->keep_temperature_change(nodal);
+    breakage.take_temperature_change(this->temperature_change());
     thermal_loads = 0.;
     find_thermal_strains();
   }

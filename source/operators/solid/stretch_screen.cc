@@ -45,7 +45,7 @@ namespace PeriDeal
                                     const std::vector<double> &critical)
     : families(families)
     , critical(critical)
-    , least(critical.empty() ? never : *std::min_element(critical.begin(), critical.end()))
+    , least(never)
   {
     const NodeSearch<dim> &search  = *families.nodes().search();
     const Lattice<dim>    &lattice = *families.nodes().lattice();
@@ -194,10 +194,11 @@ namespace PeriDeal
     const Nodes<dim>   &nodes = families.nodes();
     std::vector<double> own(n_all, never);
     limits.assign(n_all, never);
+    least = critical.empty() ? never : *std::min_element(critical.begin(), critical.end());
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
-        double &least = own[block_number(block_index(nodes.lattice()->index(nodes.position(i))))];
-        least         = std::min(least, critical[i]);
+        double &lowest = own[block_number(block_index(nodes.lattice()->index(nodes.position(i))))];
+        lowest         = std::min(lowest, critical[i]);
       }
     Index first{}, last;
     for (unsigned int d = 0; d < dim; ++d)

@@ -197,10 +197,13 @@ namespace PeriDeal
 
   template <int dim>
   std::vector<DamagedBond> ZoneBreaking<dim>::find_overstretched(const Vector &u,
+                                                                 const double  t,
                                                                  const double  share)
   {
     if (!criterion)
       return {};
+    if (criterion->take_time(t, this->temperatures))
+      set_limits_of_cells();
     const auto &layout = *nodes.partitioner();
     const auto  add =
       [&](const auto i, const auto j, const Tensor<1, dim> &xi, const BondMeasure &found) {
@@ -232,10 +235,12 @@ namespace PeriDeal
 
 
   template <int dim>
-  double ZoneBreaking<dim>::stretch_over_critical(const Vector &u)
+  double ZoneBreaking<dim>::stretch_over_critical(const Vector &u, const double t)
   {
     if (!criterion)
       return 0.;
+    if (criterion->take_time(t, this->temperatures))
+      set_limits_of_cells();
     double most = 0.;
     u.update_ghost_values();
     this->turn_paths([&](auto &paths) { add_tensions(paths, u); });
@@ -590,10 +595,8 @@ namespace PeriDeal
   {
     const CouplingControl &coupling = body.coupling;
     const Material        &material = body.material;
-    const std::string      entry    = material.fracture_energy  ? "Fracture energy" :
-                                      material.critical_stretch ? "Critical stretch" :
-                                                                  "Law";
     const bool             breaks   = material.breaks();
+    const std::string      entry    = breaks ? name_of_limit(material) : "Law";
     coupling.refuse(
       coupling.follows_stretches() && !breaks,
       "Zone",
@@ -613,6 +616,11 @@ namespace PeriDeal
           "'fictitious nodes' is not for 'Scheme = blending' with a 'Law' (section 'Material') that is not linear; use 'none', or 'Models = peridynamics'.");
         return;
       }
+    material.refuse(
+      material.law.breaking.criterion != BreakCriterion::stretch,
+      "Criterion",
+      "found '" + material.text("Criterion") +
+        "', which is for 'Models = peridynamics'; bonds beside elements ('coupled') break by 'stretch'.");
     coupling.refuse(
       coupling.splices(),
       "Scheme",

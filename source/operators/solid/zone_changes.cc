@@ -150,7 +150,7 @@ namespace PeriDeal
     if (!breaking)
       return 0;
     const WithGhosts ghosts(u);
-    const auto       list = breaking->find_overstretched(u, share);
+    const auto       list = breaking->find_overstretched(u, t, share);
     if (!list.empty())
       break_bonds(list, u, t);
     return list.size();

@@ -69,7 +69,7 @@ namespace PeriDeal
     }
 
     /** As ElasticOperator::stretch_over_critical(). Collective. */
-    double stretch_over_critical(const Vector &u);
+    double stretch_over_critical(const Vector &u, const double t);
 
     typename BondTable<dim>::Count n_marks() const
     {
@@ -120,7 +120,8 @@ namespace PeriDeal
     using BondDamage<dim>::loaded_side;
 
     void        add_tensions(CrackPaths<dim> &paths, const double *u) const;
-    void        watch_limits(); // of full kinematics
+    void        watch_limits();                               // of full kinematics
+    void        follow_body(const Vector &u, const double t); // of the criterion
     BondMeasure measure(const double         *u,
                         const unsigned int    i,
                         const SolidBond<dim> &bond) const; // e times W x

@@ -51,6 +51,24 @@ namespace PeriDeal
       return criterion ? criterion->of_nodes() : none;
     }
 
+    std::string name_of_limit() const
+    {
+      return criterion ? criterion->name_of_limit() : "";
+    }
+
+    /**
+     * Temperatures are by so much above the reference, at owned nodes and ghosts; empty: they are
+     * those of the scene.
+     */
+    void take_temperature_change(const Vector &change)
+    {
+      if (!knows_temperature || change.size() == 0)
+        return;
+      temperatures.resize(families.nodes().n_local());
+      for (unsigned int i = 0; i < temperatures.size(); ++i)
+        temperatures[i] = body.elasticity.reference_temperature + change.local_element(i);
+    }
+
     /**
      * The volume of neighbours over broken bonds over that of the whole family, at the owned nodes;
      * bonds that cracks of the scene cut count as broken. Not collective.
@@ -137,12 +155,14 @@ namespace PeriDeal
       paths->turn(families.nodes().communicator());
     }
 
-    const Families<dim>                        &families;
-    const BodyParameters<dim>                  &body;
-    std::unique_ptr<const DamageCriterion<dim>> criterion; // null: nothing breaks
-    BreakHistory                                so_far;
-    std::vector<Overstretched>                  overstretched;
-    std::vector<unsigned int> loaded_side; // SolidLoads::sides_nearby(); empty: none
+    const Families<dim>                  &families;
+    const BodyParameters<dim>            &body;
+    const bool                            knows_temperature; // limits depend on T
+    std::vector<double>                   temperatures; // of owned nodes and ghosts; empty: none
+    std::unique_ptr<DamageCriterion<dim>> criterion;    // null: nothing breaks
+    BreakHistory                          so_far;
+    std::vector<Overstretched>            overstretched;
+    std::vector<unsigned int>             loaded_side; // SolidLoads::sides_nearby(); empty: none
 
   private:
     void lead_paths_on();

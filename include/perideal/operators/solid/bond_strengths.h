@@ -4,9 +4,11 @@
 #pragma once
 
 #include <perideal/operators/solid/interface_bonds.h>
+#include <perideal/operators/solid/node_limits.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace PeriDeal
@@ -24,7 +26,8 @@ namespace PeriDeal
    * sqrt(2 G/(c_i + c_j)), c = G_i/s_i^2.
    *
    * Ways are looked at where the material is seen to be weaker between a node of the family and the
-   * next ones, in 32 places each.
+   * next ones, in 32 places each. Limits that change in time or with the temperature are those of
+   * the ends of bonds alone.
    */
   template <int dim>
   class BondStrengths : public DamageCriterion<dim>
@@ -58,6 +61,16 @@ namespace PeriDeal
       return at_ends;
     }
 
+    bool take_time(const double t, const std::vector<double> &temperatures) override
+    {
+      if (!changing || !changing->take_time(t, temperatures))
+        return false;
+      nodes = changing->values();
+      if (!least.empty())
+        std::transform(nodes.begin(), nodes.end(), least_across.begin(), least.begin(), least_of);
+      return true;
+    }
+
     const std::vector<double> &of_nodes() const override
     {
       return nodes;
@@ -72,8 +85,9 @@ namespace PeriDeal
     std::size_t memory_consumption() const override
     {
       return (nodes.capacity() + least.capacity() + crossing.capacity()) * sizeof(double) +
-             interfaces.memory_consumption() + begins.capacity() * sizeof(std::size_t) +
-             weak.capacity() * sizeof(Weak);
+             least_across.capacity() * sizeof(double) +
+             (changing ? changing->memory_consumption() : 0) + interfaces.memory_consumption() +
+             begins.capacity() * sizeof(std::size_t) + weak.capacity() * sizeof(Weak);
     }
 
   private:
@@ -82,6 +96,11 @@ namespace PeriDeal
       unsigned int neighbor;
       double       stretch;
     };
+
+    static double least_of(const double a, const double b)
+    {
+      return std::min(a, b);
+    }
 
     /** Of the bond between two nodes across the interface k. */
     double across(const unsigned int i, const unsigned int j, const unsigned int k) const
@@ -97,12 +116,14 @@ namespace PeriDeal
     std::vector<bool> beside_weaker(const Families<dim>    &families,
                                     const MaterialProperty &strength) const;
 
-    const bool                of_energy;    // from the fracture energy; else given
-    std::vector<double>       nodes, least; // empty: as nodes
-    const InterfaceBonds<dim> interfaces;
-    std::vector<double>       energies; // of interfaces
-    std::vector<double>       crossing; // c of nodes, with interfaces only
-    std::vector<std::size_t>  begins;   // by owned node; empty: no way is weaker than its ends
-    std::vector<Weak>         weak;
+    const bool                     of_energy;    // from the fracture energy; else given
+    std::vector<double>            nodes, least; // empty: as nodes
+    const InterfaceBonds<dim>      interfaces;
+    std::vector<double>            energies; // of interfaces
+    std::vector<double>            crossing; // c of nodes, with interfaces only
+    std::vector<std::size_t>       begins;   // by owned node; empty: no way is weaker than its ends
+    std::vector<Weak>              weak;
+    std::optional<NodeLimits<dim>> changing;     // or none: limits stay
+    std::vector<double>            least_across; // of bonds across interfaces, with least
   };
 } // namespace PeriDeal

@@ -3,11 +3,13 @@
 
 #pragma once
 
+#include <perideal/base/types.h>
 #include <perideal/bonds/families.h>
 #include <perideal/operators/solid/crack_paths.h>
 #include <perideal/scene/material.h>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -53,6 +55,16 @@ namespace PeriDeal
     const Families<dim>                        &families;
     const Material                             &material;
     std::function<CrossingEnergy(unsigned int)> crossing_energy; // of an owned node
+    std::vector<double> temperatures; // as DamageCriterion::take_time() takes them
+  };
+
+
+  /** What a criterion has to know of the body that is deformed, beside the extensions of bonds. */
+  enum class NodeQuantity
+  {
+    none,
+    tensions, // tau = c theta/q and b/q (LinearPeridynamicSolid)
+    stresses  // the six components in the order of SymmetricTensor<2, 3>
   };
 
 
@@ -86,6 +98,26 @@ namespace PeriDeal
      */
     virtual const std::vector<double> &least_stretches() const = 0;
 
+    /**
+     * Limits are those at time t.
+     *
+     * @param temperatures of owned nodes and ghosts; empty: nobody asks for them
+     * @return whether some have changed, with least_stretches()
+     */
+    virtual bool take_time(const double /*t*/, const std::vector<double> & /*temperatures*/)
+    {
+      return false;
+    }
+
+    /** What take_state() gets. */
+    virtual NodeQuantity asks_for() const
+    {
+      return NodeQuantity::none;
+    }
+
+    /** Bonds are measured in that state: values of nodes with up-to-date ghosts, one by one. */
+    virtual void take_state(const std::vector<Vector> & /*values*/) {}
+
     /** Bonds go on beyond their limit, and integrity() is to be asked. */
     virtual bool softens() const
     {
@@ -113,8 +145,13 @@ namespace PeriDeal
       return 0.;
     }
 
-    /** Critical stretches of owned nodes and ghosts, as they are reported. */
+    /** Limits of owned nodes and ghosts, as they are reported, and their name. */
     virtual const std::vector<double> &of_nodes() const = 0;
+
+    virtual std::string name_of_limit() const
+    {
+      return "critical stretch";
+    }
 
     virtual std::size_t memory_consumption() const = 0;
 

@@ -101,9 +101,9 @@ namespace PeriDeal
     bool               widen_zone(const Vector &u) override;
     void               mend_unbalanced(Vector &r, const Vector &u, const double t) const override;
 
-    double stretch_over_critical(const Vector &u) override
+    double stretch_over_critical(const Vector &u, const double t) override
     {
-      return breaking ? breaking->stretch_over_critical(u) : 0.;
+      return breaking ? breaking->stretch_over_critical(u, t) : 0.;
     }
 
     /** Damage these bonds of the zone, named alike by all processes, at the state u. Collective. */

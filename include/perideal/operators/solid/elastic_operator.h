@@ -174,7 +174,7 @@ namespace PeriDeal
     }
 
     /** Largest stretch over critical stretch of bonds at u, distributed; 0: unknown. Collective. */
-    virtual double stretch_over_critical(const Vector & /*u*/)
+    virtual double stretch_over_critical(const Vector & /*u*/, const double /*t*/)
     {
       return 0.;
     }

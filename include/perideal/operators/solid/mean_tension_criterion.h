@@ -44,6 +44,11 @@ namespace PeriDeal
       return strengths.least_stretches();
     }
 
+    bool take_time(const double t, const std::vector<double> &temperatures) override
+    {
+      return strengths.take_time(t, temperatures);
+    }
+
     const std::vector<double> &of_nodes() const override
     {
       return strengths.of_nodes();
@@ -60,8 +65,8 @@ namespace PeriDeal
     }
 
   private:
-    const BondStrengths<dim> strengths;
-    const Nodes<dim>        &nodes;
-    mutable CrackPaths<dim>  ways; // led on by those who break bonds
+    BondStrengths<dim>      strengths;
+    const Nodes<dim>       &nodes;
+    mutable CrackPaths<dim> ways; // led on by those who break bonds
   };
 } // namespace PeriDeal

@@ -26,4 +26,20 @@ namespace PeriDeal
    */
   template <int dim>
   NodalTensors<dim> nodal_tensors(const SolidBonds<dim> &bonds, const Vector &u, const Vector &tau);
+
+
+  /** The stresses of such tensors of the owned nodes, with those out of the plane. */
+  template <int dim>
+  std::vector<dealii::SymmetricTensor<2, 3>> nodal_stresses(const SolidBonds<dim>     &bonds,
+                                                            const BodyParameters<dim> &body,
+                                                            const NodalTensors<dim>   &tensors);
+
+
+  /** NodeQuantity::stresses and tensions at u, with ghosts. Collective. */
+  template <int dim>
+  std::vector<Vector> nodal_stress_components(const SolidBonds<dim>     &bonds,
+                                              const BodyParameters<dim> &body,
+                                              const Vector              &u);
+  template <int dim>
+  std::vector<Vector> nodal_tensions(const SolidBonds<dim> &bonds, const Vector &u);
 } // namespace PeriDeal

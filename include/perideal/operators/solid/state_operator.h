@@ -94,9 +94,9 @@ namespace PeriDeal
 
     unsigned long long break_bonds(const Vector &u, double t, double share = 0.) override;
 
-    double stretch_over_critical(const Vector &u) override
+    double stretch_over_critical(const Vector &u, const double t) override
     {
-      return breakage.stretch_over_critical(u);
+      return breakage.stretch_over_critical(u, t);
     }
 
     const dealii::Point<dim> &position(const unsigned int node) const override

@@ -51,6 +51,9 @@ namespace PeriDeal
      */
     const std::vector<unsigned int> &suspects(const double *u, const double least_strain) const;
 
+    /** Critical stretches are others. */
+    void find_limits();
+
     /** The least critical stretch of the nodes of this process. */
     double least_critical() const
     {
@@ -92,7 +95,6 @@ namespace PeriDeal
     Index       block_index(const Index &site) const;
     std::size_t block_number(const Index &index) const;
     void        find_runs();
-    void        find_limits();
     void        find_irregular();
     bool        is_irregular(const unsigned int i, const Index &low, const Index &high) const;
     template <typename Visit>

@@ -63,10 +63,14 @@ namespace PeriDeal
                  const dealii::DoFHandler<dim>    &dofs,
                  const BodyParameters<dim>        &body);
 
-    /** Thermal strains of all nodes known here; empty: none. Not collective. */
-    void set_thermal(std::vector<double> strains)
+    /**
+     * Thermal strains of all nodes known here; empty: none. Not collective.
+     * @param change ElasticOperator::temperature_change()
+     */
+    void set_thermal(std::vector<double> strains, const Vector &change)
     {
       thermal = std::move(strains);
+      this->take_temperature_change(change);
       set_limits_of_cells();
     }
 
@@ -80,13 +84,15 @@ namespace PeriDeal
      * over critical stretch; of those that soften all whose stiffness changes. In ascending order
      * of their nodes. Ghosts of u are up to date.
      */
-    std::vector<DamagedBond> find_overstretched(const Vector &u, const double share);
+    std::vector<DamagedBond> find_overstretched(const Vector &u,
+                                                const double  t,
+                                                const double  share);
 
     /**
      * As ElasticOperator::stretch_over_critical(); cells that are stretched so much that bonds are
      * to appear there count by their largest principal strain.
      */
-    double stretch_over_critical(const Vector &u);
+    double stretch_over_critical(const Vector &u, const double t);
 
     /** Of those that break the boxes around bonds between vertices of a cell, which is parted. */
     std::vector<dealii::BoundingBox<dim>> parted_by(const std::vector<DamagedBond> &list) const;
