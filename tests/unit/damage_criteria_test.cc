@@ -339,7 +339,7 @@ namespace PeriDeal
   {
     for (const double angle : {0., std::atan(1.)})
       EXPECT_NEAR(released_over_energy(angle, "bond-based"), 1., 0.01) << angle;
-    // Of the state-based solid what a bond has stored when it breaks is not all that is lost with it.
+    // What a bond of the state-based solid has stored when it breaks is not all that goes with it.
     EXPECT_NEAR(released_over_energy(0., "state-based"), 0.973, 0.01);
   }
 
