@@ -484,7 +484,10 @@ namespace PeriDeal
                                    scene.horizon() / spacing,
                                    completes_at_surfaces<dim>(scene)) :
                 "",
-              states->brittle() && is_correspondence ? note_on_nodal_cracks() : "",
+              states->brittle() && is_correspondence &&
+                  scene.material.law.breaking.criterion == BreakCriterion::stretch ?
+                note_on_nodal_cracks() :
+                "",
               states->brittle() && !scene.material.law.softens() ? note_on_trapping(scene, family) :
                                                                    "",
               note_on_softening(),

@@ -663,6 +663,18 @@ namespace PeriDeal
           return;
         }
     }
+
+
+    template <int dim>
+    void note_loads_borne(const SolidProblem<dim> &run, const RunContext &context)
+    {
+      const double factor = run.op().stepping.load_factor;
+      if (factor < 1.)
+        context.record.notes.push_back(
+          run.name() + ": at the end loads and prescribed displacements are " +
+          rounded_text(factor) +
+          " times those of the time ('load factor' in totals.csv), since bonds bear no more ('Breaking = controlled' in section 'Elasticity'). A later 'End time', with more load steps, goes on.");
+    }
   } // namespace
 
 
@@ -723,6 +735,7 @@ namespace PeriDeal
     // What warming does to the strain energy is not followed.
     if (run.stepper || (!run.scene.time.steady && !run.scene.warms_slowly()))
       note_energy(run, context);
+    note_loads_borne(run, context);
     note_inversion(run, context);
     note_turning(run, context);
     note_torn_sides(run, context);

@@ -74,7 +74,7 @@ namespace PeriDeal
       "Of bodies at rest whose bonds break, `in motion`: once the first bonds have broken, the others break in a damped motion from equilibrium to equilibrium; or `at rest`, "
       "in one equilibrium after the other, in each those whose stretch is at least 0.9 of the largest. Then slow cracks are drawn to the rows of the lattice. "
       "`auto` is in motion; bonds that soften (`Law = softening`) do so at rest. `controlled`: where the body would give way at once (snap-back) loads and prescribed displacements go back, "
-      "as in a test that is controlled by the opening of a crack; `load factor` in totals.csv is what they are times. Linear bodies of one temperature.";
+      "as in a test that is controlled by the opening of a crack; `load factor` in totals.csv multiplies all of them. For `Law = linear` and `softening`, linear kinematics, one temperature.";
     declare(dissipation_step,
             "Dissipation step",
             "0.02",
@@ -153,7 +153,7 @@ namespace PeriDeal
            std::string(
              "'controlled' is for bodies whose displacements are in proportion to the loads; ") +
              (has_full_kinematics() ?
-                "'Kinematics' is 'full'. Use 'small', or" :
+                "'Kinematics' is 'full'. Use 'linear', or" :
                 "those of a 'Temperature change' are not. Leave it out, or use") +
              " 'at rest' or 'in motion' here.");
     refuse(is_given("Crack direction") && !is_static(),

@@ -266,7 +266,7 @@ namespace PeriDeal
       material.refuse(
         breaking.unbreakable && !material.breaks(),
         "Unbreakable",
-        "is for bodies whose bonds break: give 'Fracture energy' or 'Critical stretch', too, or leave it out.");
+        "is for bodies whose bonds break: give 'Fracture energy', 'Critical stretch' or 'Critical stress', too, or leave it out.");
     }
   } // namespace
 
@@ -288,7 +288,7 @@ namespace PeriDeal
     refuse(
       modulus && !breaks(),
       "Weibull modulus",
-      "is for bonds that break: give 'Fracture energy' or 'Critical stretch', too, or leave it out.");
+      "is for bonds that break: give 'Fracture energy', 'Critical stretch' or 'Critical stress', too, or leave it out.");
     refuse(
       modulus && !seed,
       "Strength seed",

@@ -368,13 +368,20 @@ namespace PeriDeal
       "Crack direction",
       "found 'mean tension', which is for 'Criterion = stretch' in section 'Material', where 'Criterion' is '" +
         material.text("Criterion") + "'. Leave one of them out.");
-    const bool has_images = scene.peridynamics.completes_families() ||
-                            !scene.boundary_conditions.symmetry.empty();
     material.refuse(
-      is_other && has_images,
+      is_other && !scene.boundary_conditions.symmetry.empty(),
       "Criterion",
       "found '" + material.text("Criterion") +
-        "', which knows nothing of nodes beyond the body ('Symmetry' in section 'Boundary conditions', 'Surface correction = fictitious nodes' in 'Peridynamics'). Leave them out, or use 'stretch'.");
+        "', which knows nothing of what is beyond the body ('Symmetry' in section 'Boundary conditions'). Compute the whole body, or use 'stretch'.");
+    scene.elasticity.refuse(
+      scene.elasticity.controls_loads() && material.law.kind != SolidLaw::linear &&
+        !material.law.softens(),
+      "Breaking",
+      "found 'controlled', which is for 'Law = linear' and 'softening' (section 'Material'), where displacements are in proportion to the loads. Use another of them, or 'at rest' or 'in motion' here.");
+    scene.elasticity.refuse(
+      scene.elasticity.controls_loads() && !scene.is_loaded_slowly(),
+      "Breaking",
+      "found 'controlled', but no load depends on t: give displacements, tractions or forces that grow with it, as in 'top: 0, 0.01*t'.");
     material.refuse(
       breaking.criterion == BreakCriterion::energy &&
         scene.elasticity.model == ElasticModel::correspondence,
@@ -408,7 +415,7 @@ namespace PeriDeal
     scene.elasticity.refuse(
       scene.elasticity.is_given("Breaking") && !material.breaks(),
       "Breaking",
-      "is for bonds that break: give 'Fracture energy' or 'Critical stretch' in section 'Material', too, or leave it out.");
+      "is for bonds that break: give 'Fracture energy', 'Critical stretch' or 'Critical stress' in section 'Material', too, or leave it out.");
     refuse_crack_direction(scene);
     refuse_breaking(scene);
     scene.elasticity.refuse(
@@ -576,6 +583,10 @@ namespace PeriDeal
         return "prescribed cracks that grow beside bonds that break ('Growth' in section 'Cracks')";
       if (scene.material.scatter)
         return "strengths that scatter from node to node, another body on each lattice ('Weibull modulus' in section 'Material')";
+      if (scene.material.law.breaking.criterion != BreakCriterion::stretch)
+        return "another 'Criterion' than 'stretch' (section 'Material')";
+      if (!scene.material.text("Unbreakable").empty() || scene.material.phases.gives("Unbreakable"))
+        return "bonds that never break ('Unbreakable' in section 'Material')";
       if (!scene.material.law.interfaces.empty())
         return "interfaces with a fracture energy of their own ('Interfaces' in section 'Material')";
       if (is_long)

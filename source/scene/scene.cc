@@ -136,6 +136,7 @@ namespace PeriDeal
            (warms_slowly() || !cracks.tips.empty() || material.law.kind == SolidLaw::viscoelastic ||
             (!material.law.user.library.empty() && !time.steady) || // which may know time
             boundary_conditions.depends_on_time() ||
+            (material.breaks() && limit_of_bonds(material).depends_on_time()) ||
             std::any_of(forces.begin(), forces.end(), [](const auto &force) {
               return force.depends_on_time();
             }));

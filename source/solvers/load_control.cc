@@ -55,7 +55,7 @@ namespace PeriDeal
     last.dissipated = dissipated;
     // Those that are pressed are so at any loads; others do not change at so little.
     scaled = u;
-    scaled /= 1. + span;
+    scaled /= 1. + 2. * span; // by round-off no bond is to be above its limit
     if (op.break_bonds(scaled, t) > 0)
       return true;
     if (op.stepping.load_factor == 1. || last.going_back >= share * largest)

@@ -484,7 +484,7 @@ namespace PeriDeal
     so_far.work += work_of_forces.step(before.state, u, memory.unbalanced, end);
     so_far.exchanged = std::max(so_far.exchanged, so_far.start + std::abs(so_far.work));
     breaking         = {end, 0., false, false, breaking.goal, breaking.most, breaking.division};
-    if (before_breaks && most > 1.)
+    if (before_breaks && (most > 1. || (breaks.control && breaks.control->turns_back())))
       before_breaks(end);
   }
 

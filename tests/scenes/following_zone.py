@@ -72,6 +72,11 @@ def static():
         compare(table, f"oblique crack, m = 3, {breaking}", SCENE, {**QUIET, "Time/Time step": "0.02"}, "top", 0.02, 0.2, breaking=breaking)
     compare(table, "double cantilever, m = 3", "prm/fracture/double_cantilever.prm", {
         **VERTICES, "Domain/Cells": "100, 21", "Peridynamics/Horizon ratio": "3", "Time/Time step": "0.05", "Time/End time": "0.8"}, None, 0.02, 0.25)
+    table.show()
+
+
+def block():
+    table = Comparison("A zone that follows in space, over bonds everywhere")
     compare(table, "block, m = 2", "prm/fracture/cracked_block.prm", {
         **VERTICES, "Domain/Cells": "17, 33, 3", "Peridynamics/Horizon ratio": "2", "Time/Time step": "0.04", "Time/End time": "0.92"}, "top", 1 / 17, 0.3)
     table.show()
@@ -157,4 +162,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(static, bodies, motion, heat, mistakes)
+    run_parts(static, bodies, motion, heat, mistakes, block=block)

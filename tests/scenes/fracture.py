@@ -435,6 +435,9 @@ def criteria():
                                                "Initial and source/Initial velocity": "0, 0.004*y", "Time/End time": "0.5"}),
                        ("of temperature", {**warm, "Material/Critical stretch": "0.0032*(1 - T/160)"})):
         table.add(f"critical stretch {what}: time of the first break", first_break({**STRETCHED, **more}), 0.4, absolute=0.004)
+    # Loads that stay, limits that fall; what is no limit any more.
+    table.add("a strength that falls under loads that stay: time of the first break", first_break({**UNIFORM, "Boundary conditions/Displacement": "top: 0, 0.002; bottom: 0, -0.002", "Material/Critical stress": "0.8 - 0.5*t", "Time/Time step": "0.01"}), 0.8, absolute=0.011)
+    check_message(run_scene(STRENGTH, {**STRETCHED, "Material/Critical stretch": "", "Material/Fracture energy": "2*(1 - 3*t)"}, expect_error=True), "'Fracture energy' in section 'Material'", "not positive")
     # The hole breaks, the grips do not, whatever the criterion.
     coarse = {**QUIET, "Domain/Cells": "20, 40", "Solver/Tolerance": "1e-12", "Boundary conditions/Displacement": "top: 0, 0.008*t; bottom: 0, -0.008*t"}
     for criterion, limit in (("principal stress", {}), ("energy", {"Material/Critical stress": "", "Material/Fracture energy": "2e-4", "Peridynamics/Kernel": "constant"})):

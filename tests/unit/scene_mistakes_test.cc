@@ -180,9 +180,10 @@ Models=coupled & Material/Fracture energy=1 & Material/Criterion=energy & Coupli
 Models=peridynamics & Elasticity/Model=correspondence & Material/Fracture energy=1 & Material/Criterion=energy => 'Criterion' | correspondence
 Models=peridynamics & Boundary conditions/Displacement=bottom: 0, 0 & Boundary conditions/Symmetry=left & Material/Critical stress=1 & Material/Criterion=von mises => 'Criterion' | beyond the body | 'Symmetry'
 Elasticity/Breaking=at rest => 'Breaking' in section 'Elasticity' | bonds that break | 'Fracture energy'
+Material/Critical stretch=0.1 & Elasticity/Breaking=controlled => 'Breaking' | no load depends on t
 Elasticity/Dissipation step=0.1 => 'Dissipation step' | 'Breaking = controlled'
 Material/Critical stretch=0.1 & Elasticity/Breaking=controlled & Elasticity/Dissipation step=2 => 'Dissipation step' in section 'Elasticity' | 2 | less than 1
-Material/Critical stretch=0.1 & Elasticity/Breaking=controlled & Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Breaking' | in proportion to the loads | 'small'
+Material/Critical stretch=0.1 & Elasticity/Breaking=controlled & Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Breaking' | in proportion to the loads | 'linear'
 Material/Critical stretch=0.1 & Elasticity/Breaking=controlled & Elasticity/Temperature change=10 & Material/Thermal expansion=1e-5 => 'Breaking' | 'Temperature change' | 'at rest'
 Elasticity/Kinematics=full => 'Kinematics' | 'linear' | 'conjugate gradients'
 Elasticity/Preconditioner=none => 'Preconditioner' | conjugate gradients | 'linear'

@@ -69,7 +69,7 @@ namespace PeriDeal
       return text("Preconditioner") == "multigrid";
     }
 
-    /** What bonds of bodies at rest do once the first have broken. */
+    // What bonds of bodies at rest do once the first have broken:
     /** Loads go back where bonds break. */
     bool controls_loads() const
     {

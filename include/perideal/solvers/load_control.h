@@ -39,6 +39,12 @@ namespace PeriDeal
       op.stepping.load_factor = before;
     }
 
+    /** The whole loads were borne before the step, and are not any more. */
+    bool turns_back() const
+    {
+      return before == 1. && op.stepping.load_factor < 1.;
+    }
+
     /** From an equilibrium to the one under the whole loads, with the bonds as they are. */
     void take_forward(Vector &u);
 

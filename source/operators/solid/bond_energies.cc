@@ -83,16 +83,31 @@ namespace PeriDeal
           xi[d] = member.offset[d] * nodes.lattice()->spacing[d];
         of_lattice += crossing_of(xi, nodes.lattice()->cell_volume());
       }
+    // Of meshes the largest family is whole; of smaller ones, at surfaces, planes cut as much.
+    std::vector<double> of_families(nodes.n_owned(), 1.);
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         double crossing = of_lattice;
         if (!nodes.lattice())
-          families.members_of(i, family);
+          {
+            families.members_of(i, family);
+            of_families[i] = 0.;
+          }
         for (const auto &bond : family)
-          crossing += crossing_of(families.neighbors().bond_vector(i, bond.neighbor),
-                                  nodes.volume(bond.neighbor));
+          {
+            const Tensor<1, dim> xi     = families.neighbors().bond_vector(i, bond.neighbor);
+            const double         volume = nodes.volume(bond.neighbor);
+            crossing += crossing_of(xi, volume);
+            of_families[i] += families.weights().of_length(xi.norm()) * volume;
+          }
         factors.local_element(i) = 1. / crossing;
       }
+    double most = 0.;
+    for (const double one : of_families)
+      most = std::max(most, one);
+    most = Utilities::MPI::max(most, nodes.communicator());
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      factors.local_element(i) *= of_families[i] / most;
     factors.update_ghost_values();
     std::vector<double> list = scatter_factors(bonds); // of stretches
     for (unsigned int i = 0; i < list.size(); ++i)

@@ -90,7 +90,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < now.size(); ++i)
       {
         now[i] = limit(i, t, temperatures);
-        if (now[i] <= 0.)
+        if (!(now[i] > 0.)) // roots of negative values are none
           report_formula_error(fault_at(nodes.position(i), t));
       }
     return true;

@@ -158,8 +158,6 @@ namespace PeriDeal
                                               const BodyParameters<dim> &body,
                                               const Vector              &u)
   {
-    if (bonds.yielding())
-      bonds.yielding()->find(u);
     const std::vector<Vector> tensions =
       bonds.by_family ? std::vector<Vector>(1, Vector(bonds.families.nodes().partitioner())) :
                         nodal_tensions(bonds, u);

@@ -326,7 +326,7 @@ namespace PeriDeal
   std::pair<double, double> ZoneBreaking<dim>::limit_of(
     const std::array<unsigned int, n_corners> &corners) const
   {
-    double limit = std::numeric_limits<double>::max(), warm = 0.;
+    double limit = 1e100, warm = 0.; // where none is known: its square is a number
     for (const unsigned int i : corners)
       {
         limit = std::min(limit, criterion->least_stretches()[i]);
