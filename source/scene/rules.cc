@@ -585,7 +585,7 @@ namespace PeriDeal
         return "strengths that scatter from node to node, another body on each lattice ('Weibull modulus' in section 'Material')";
       if (scene.material.law.breaking.criterion != BreakCriterion::stretch)
         return "another 'Criterion' than 'stretch' (section 'Material')";
-      if (!scene.material.text("Unbreakable").empty() || scene.material.phases.gives("Unbreakable"))
+      if (scene.material.is_given("Unbreakable") || scene.material.phases.gives("Unbreakable"))
         return "bonds that never break ('Unbreakable' in section 'Material')";
       if (!scene.material.law.interfaces.empty())
         return "interfaces with a fracture energy of their own ('Interfaces' in section 'Material')";
