@@ -80,7 +80,7 @@ namespace PeriDeal
             "0.02",
             "1",
             {0., 1., false, "a share, greater than 0 and less than 1"}) =
-      "With `Breaking = controlled`: a load step ends when it has dissipated this share of the largest strain energy so far, or bears the whole loads of its time.";
+      "With `Breaking = controlled`: a load step ends when the whole loads of its time are borne, or, on a way back, this share of the largest strain energy so far has been dissipated.";
     declare("Crack direction", EntryType::choice, "bonds", "", {"bonds", "mean tension"}) =
       "Two dimensions only, of bodies at rest whose bonds break: where cracks of section `Cracks` go as they grow, wherever bonds are stretched too far (`bonds`), or straight across the "
       "largest tension, a mean over the bonds about the tip (`mean tension`): then of the bonds within two horizons of a crack those alone break that lie in its way. "

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "body_waves.h"
 #include "elastic_coupling_tools.h"
 
 using namespace PeriDeal;
@@ -33,17 +34,6 @@ namespace
   }
 
   const std::string half = "0.8 - x"; // of the body of zoned()
-
-  template <int dim>
-  Vector waves(const Body<dim> &body, const double size, const double phase)
-  {
-    return body.values([&](Point<dim> p) {
-      for (unsigned int d = 0; d < dim; ++d)
-        p[d] += phase * (1. + 0.3 * d);
-      return Tensor<1, dim>(size * bumpy_vector<dim>(p));
-    });
-  }
-
 
   /** Two steps in which the body flows. */
   template <int dim>

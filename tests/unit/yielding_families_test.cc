@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-#include "elastic_test_tools.h"
+#include "body_waves.h"
 
 using namespace PeriDeal;
 using namespace PeriDeal::OperatorTests;
@@ -49,18 +49,6 @@ namespace
        stress + Settings{{"Material/Yield stress", "0.3 + 0.4*x"},
                          {"Material/Hardening modulus", "0.1 + y"},
                          {"Material/Young modulus", "3 + y"}}}};
-  }
-
-
-  /** Waves of a size and a phase. */
-  template <int dim>
-  Vector waves(const Body<dim> &body, const double size, const double phase)
-  {
-    return body.values([&](Point<dim> p) {
-      for (unsigned int d = 0; d < dim; ++d)
-        p[d] += phase * (1. + 0.3 * d);
-      return Tensor<1, dim>(size * bumpy_vector<dim>(p));
-    });
   }
 
 

@@ -8,30 +8,24 @@
 
 #include <algorithm>
 
+#include "with_ghosts.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
 
   namespace
   {
-    /** Leaves the ghosts of a vector as they were. */
-    class KeptGhosts
+    /** Rows for Correspondence: q of ghosts is known, and there is memory of histories. */
+    template <int dim>
+    BondTable<dim> &completed(BondTable<dim>            &rows,
+                              const NodeLaws<dim>       &laws,
+                              const BodyParameters<dim> &body)
     {
-    public:
-      explicit KeptGhosts(const Vector &vector)
-        : vector(vector)
-        , is_known(vector.has_ghost_elements())
-      {}
-
-      ~KeptGhosts()
-      {
-        vector.set_ghost_state(is_known);
-      }
-
-    private:
-      const Vector &vector;
-      const bool    is_known;
-    };
+      laws.weighted.update_ghost_values();
+      rows.find_springs(false, body.material.law.yields() ? Correspondence<dim>::n_history : 0);
+      return rows;
+    }
   } // namespace
 
 
@@ -59,15 +53,7 @@ namespace PeriDeal
     : laws(coupling.families().nodes(), body)
     , ends(coupling.families())
     , rows(coupling.families(), laws, ends, body, reaching(coupling))
-    , nodal(
-        (laws.weighted.update_ghost_values(),
-         rows.find_springs(false, body.material.law.yields() ? Correspondence<dim>::n_history : 0),
-         coupling.families()),
-        ends,
-        rows,
-        laws,
-        thermal,
-        body)
+    , nodal(coupling.families(), ends, completed(rows, laws, body), laws, thermal, body)
     , found(interleaved(*coupling.families().nodes().partitioner(), dim))
   {
     const NodeFamilies<dim> &shares = *coupling.node_families();

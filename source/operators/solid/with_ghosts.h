@@ -7,26 +7,36 @@
 
 namespace PeriDeal
 {
-  /** Ghosts of a vector are up to date while this lives. */
-  class WithGhosts
+  /** Whether a vector has ghosts is as before where this ends. */
+  class KeptGhosts
   {
   public:
-    explicit WithGhosts(const Vector &vector)
+    explicit KeptGhosts(const Vector &vector)
       : vector(vector)
       , before(vector.has_ghost_elements())
-    {
-      vector.update_ghost_values();
-    }
+    {}
 
-    ~WithGhosts()
+    ~KeptGhosts()
     {
       vector.set_ghost_state(before);
     }
 
-    WithGhosts(const WithGhosts &) = delete;
+    KeptGhosts(const KeptGhosts &) = delete;
 
   private:
     const Vector &vector;
     const bool    before;
+  };
+
+
+  /** Ghosts of a vector are up to date while this lives. */
+  class WithGhosts : public KeptGhosts
+  {
+  public:
+    explicit WithGhosts(const Vector &vector)
+      : KeptGhosts(vector)
+    {
+      vector.update_ghost_values();
+    }
   };
 } // namespace PeriDeal
