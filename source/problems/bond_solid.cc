@@ -11,8 +11,8 @@
 #include <perideal/operators/solid/state_operator.h>
 #include <perideal/operators/solid/surface_stiffness.h>
 #include <perideal/scene/beyond_sides.h>
+#include <perideal/scene/law_text.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/user_properties.h>
 
 #include <algorithm>
 #include <cmath>
@@ -431,7 +431,7 @@ namespace PeriDeal
       ChosenSettings settings() const override
       {
         auto list = this->bond_settings(states->bonds().families);
-        if (const std::string law = user_law_text(scene.material); !law.empty())
+        if (const std::string law = law_text(scene, ModelKind::peridynamics); !law.empty())
           list.emplace_back("law", law);
         if (!states->brittle())
           return list;

@@ -14,8 +14,8 @@
 #include <perideal/laws/elasticity.h>
 #include <perideal/laws/entropy_of_deformation.h>
 #include <perideal/operators/solid/elastic_elements.h>
+#include <perideal/scene/law_text.h>
 #include <perideal/scene/lists.h>
-#include <perideal/scene/user_properties.h>
 
 #include <algorithm>
 #include <cmath>
@@ -519,7 +519,7 @@ namespace PeriDeal
       {
         ChosenSettings list;
         list.emplace_back("elements", "Q" + std::to_string(degree()));
-        if (const std::string law = user_law_text(scene.material); !law.empty())
+        if (const std::string law = law_text(scene, model); !law.empty())
           list.emplace_back("law", law);
         if (model == ModelKind::coupled)
           {

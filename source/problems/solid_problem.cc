@@ -213,6 +213,7 @@ namespace PeriDeal
         if (of_both && scene.time.time_step > 0.)
           return scene.time.time_step;
         const bool in_steps = of_both || scene.material.breaks() ||
+                              scene.material.law.kind != SolidLaw::linear ||
                               scene.elasticity.has_full_kinematics() || !scene.cracks.tips.empty();
         return (in_steps ? share : 1.) * scene.time.end_time;
       }
@@ -422,12 +423,41 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** What an evaluation of the forces takes of each node. Collective. */
+    std::string price_of_forces(const ElasticOperator &op, const double nodes, const MPI_Comm all)
+    {
+      constexpr unsigned int n_trials = 5;
+      constexpr double       micro    = 1e6;
+      Vector                 u, forces;
+      op.initialize_vector(u);
+      op.initialize_vector(forces);
+      op.unbalanced(forces, u, 0.);
+      const double start = processor_seconds();
+      for (unsigned int k = 0; k < n_trials; ++k)
+        op.unbalanced(forces, u, 0.);
+      const double seconds = Utilities::MPI::sum((processor_seconds() - start) / n_trials, all),
+                   memory  = Utilities::MPI::sum(1. * op.size().memory, all);
+      return "  price of the law: " + rounded_text(micro * seconds / nodes, 2) +
+             " microseconds of a processor for the forces of a node, " +
+             readable_bytes(memory / nodes) + " a node";
+    }
+  } // namespace
+
+
   template <int dim>
   double SolidProblem<dim>::time_of_run(const std::vector<double> &times,
-                                        const bool,
-                                        const RunContext &context,
-                                        double           &memory)
+                                        const bool                 says,
+                                        const RunContext          &context,
+                                        double                    &memory)
   {
+    const ChosenSettings chosen = this->settings();
+    if (says && std::any_of(chosen.begin(), chosen.end(), [](const auto &setting) {
+          return setting.first == "law";
+        }))
+      context.progress.line(
+        price_of_forces(op(), this->dofs().n_dofs(), this->dofs().get_communicator()));
     if (!stepper)
       {
         const double n_steps =

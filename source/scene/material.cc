@@ -43,6 +43,8 @@ namespace PeriDeal
     const std::string two =
       " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
     const std::string formula = ": a number or a formula of x, y, z.";
+    const std::string of_warmth =
+      ": a number or a formula of x, y, z and T, the temperature where it is computed, else the Temperature change that is given (section `Elasticity`).";
     const std::string of_changes =
       ": a number or a formula of x, y, z, the time t and T, the temperature where it is computed, else the Temperature change that is given (section `Elasticity`).";
 
@@ -71,6 +73,11 @@ namespace PeriDeal
          "Bonds with an end where this is greater than 0 never break, by whatever criterion: grips, supports, what is beneath a load" +
            formula +
            " Of a phase: `name: 1` in `Phases`. Cracks of section `Cracks` cut them all the same."},
+        {"Rate factor",
+         EntryType::formula,
+         "1",
+         "1",
+         "In motion: by how much the limit at which a bond breaks grows with the rate at which it is stretched, a formula of `rate` (1/time) with the value 1 at 0, as in `1 + 0.05*log(1 + rate/10)`. 1 or more."},
         {"Tensile strength",
          EntryType::formula,
          "",
@@ -159,11 +166,11 @@ namespace PeriDeal
             {"linear", "viscoelastic", "plastic", "softening", "formula", "hyperelastic", "user"}) =
       "Elasticity: how forces follow from what the body goes through. `viscoelastic`: the shear modulus relaxes (`Relaxation`), the bulk modulus does not; `plastic`: the body yields at a von Mises stress (`Yield stress`, `Hardening modulus`; J2 with isotropic hardening); `softening`: bonds lose their force little by little from the tensile strength on (`Tensile strength`, `Fracture energy`, `Softening`), as concrete does; `formula`: by a formula of your own (`Bond force`); `hyperelastic`: rubber, a compressible neo-Hookean body of the two moduli, in finite elements and correspondence with `Kinematics = full` (section `Elasticity`); `user`: by a program of your own (`User law`), a UMAT in finite elements and correspondence, a law of bonds in `state-based` and `bond-based` peridynamics.";
     entry("Yield stress") =
-      "With `Law = plastic`: the von Mises stress from which on the body yields" + formula +
+      "With `Law = plastic`: the von Mises stress from which on the body yields" + of_warmth +
       " A phase that shall stay elastic gets a large one.";
     entry("Hardening modulus", "0") =
       "With `Law = plastic`: by how much the yield stress grows per equivalent plastic strain" +
-      formula + " 0 or more.";
+      of_warmth + " 0 or more.";
     declare(law.softening, "Softening", "exponential", {"linear", "bilinear", "exponential"}) =
       "With `Law = softening`: the stress over the opening. `bilinear` has its kink at a third of the strength (Petersson's, for concrete).";
     for (const PlainEntry &of : entries_of_laws())
@@ -263,9 +270,21 @@ namespace PeriDeal
                       "Interfaces",
                       "break by the stretch of their bonds; 'Criterion' is '" +
                         material.text("Criterion") + "'. Leave one of them out.");
+      if (breaking.rate_factor)
+        {
+          const double at_rest = breaking.rate_factor->value(dealii::Point<1>());
+          material.refuse(std::abs(at_rest - 1.) > 1e-12,
+                          "Rate factor",
+                          "is " + number_text(at_rest) +
+                            " at a rate of 0, needs 1 there: limits are those of slow loads.");
+          material.refuse(
+            material.law.softens(),
+            "Rate factor",
+            "is for bonds that break at once; those of 'Law = softening' soften. Leave one of them out.");
+        }
       material.refuse(
-        breaking.unbreakable && !material.breaks(),
-        "Unbreakable",
+        (breaking.unbreakable || breaking.rate_factor) && !material.breaks(),
+        breaking.unbreakable ? "Unbreakable" : "Rate factor",
         "is for bodies whose bonds break: give 'Fracture energy', 'Critical stretch' or 'Critical stress', too, or leave it out.");
     }
   } // namespace
@@ -282,6 +301,9 @@ namespace PeriDeal
     law.breaking.unbreakable.reset();
     if (is_given("Unbreakable") || phases.gives("Unbreakable"))
       law.breaking.unbreakable = phases.property("Unbreakable", read("Unbreakable", physics));
+    law.breaking.rate_factor.reset();
+    if (is_given("Rate factor"))
+      law.breaking.rate_factor = Expression(text("Rate factor"), where("Rate factor"), "rate");
     refuse_criterion(*this);
     scatter.reset();
     const bool modulus = !text("Weibull modulus").empty(), seed = !text("Strength seed").empty();

@@ -269,8 +269,8 @@ namespace PeriDeal
       {"Critical stress", "force/length^2", false, true, false, true, true},
       {"Unbreakable", "1", false, true, false, false},
       {"Tensile strength", "force/length^2", false, true, false, true},
-      {"Yield stress", "force/length^2", false, true, false, true},
-      {"Hardening modulus", "force/length^2", false, true, false, false}};
+      {"Yield stress", "force/length^2", false, true, true, true},
+      {"Hardening modulus", "force/length^2", false, true, true, false}};
     return entries;
   }
 
@@ -292,7 +292,9 @@ namespace PeriDeal
                               const bool           may_vanish,
                               const std::string   &where)
   {
-    const bool        knows_temperature = entry.with_temperature && !(elastic && entry.elasticity);
+    // A solid has it in what diffusion has not.
+    const bool        is_unknown        = elastic && entry.elasticity && entry.diffusion;
+    const bool        knows_temperature = entry.with_temperature && !is_unknown;
     const std::string variables         = entry.changes     ? "x, y, z, t, T" :
                                           knows_temperature ? "x, y, z, T" :
                                                               "x, y, z";
@@ -301,7 +303,7 @@ namespace PeriDeal
       entry_error(where, "'" + text + "' depends on t; known variables here: " + variables + ".");
     if (formula.depends_on_temperature() && !entry.with_temperature && !entry.changes)
       entry_error(where, "'" + text + "' depends on T; known variables here: x, y, z.");
-    if (formula.depends_on_temperature() && elastic && entry.elasticity && !entry.changes)
+    if (formula.depends_on_temperature() && is_unknown && !entry.changes)
       entry_error(
         where,
         "'" + text +

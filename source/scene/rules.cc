@@ -373,6 +373,18 @@ namespace PeriDeal
       "Criterion",
       "found '" + material.text("Criterion") +
         "', which knows nothing of what is beyond the body ('Symmetry' in section 'Boundary conditions'). Compute the whole body, or use 'stretch'.");
+    const auto refuse_rates = [&](const bool is_so, const std::string &why) {
+      material.refuse(breaking.rate_factor && is_so, "Rate factor", why);
+    };
+    refuse_rates(
+      scene.elasticity.is_static(),
+      "is for bodies in motion ('Solver = dynamics' in section 'Elasticity'); 'Solver' is '" +
+        scene.elasticity.solver_name() + "'. Leave the entry out.");
+    refuse_rates(runs(scene, ModelKind::coupled),
+                 "is for 'Models = peridynamics', not 'coupled'. Leave one of them out.");
+    refuse_rates(
+      !scene.boundary_conditions.symmetry.empty(),
+      "knows nothing of what is beyond the body ('Symmetry' in section 'Boundary conditions'). Compute the whole body, or leave the entry out.");
     scene.elasticity.refuse(
       scene.elasticity.controls_loads() && material.law.kind != SolidLaw::linear &&
         !material.law.softens(),
@@ -585,6 +597,8 @@ namespace PeriDeal
         return "strengths that scatter from node to node, another body on each lattice ('Weibull modulus' in section 'Material')";
       if (scene.material.law.breaking.criterion != BreakCriterion::stretch)
         return "another 'Criterion' than 'stretch' (section 'Material')";
+      if (scene.material.law.breaking.rate_factor)
+        return "limits that depend on the rate ('Rate factor' in section 'Material')";
       if (scene.material.is_given("Unbreakable") || scene.material.phases.gives("Unbreakable"))
         return "bonds that never break ('Unbreakable' in section 'Material')";
       if (!scene.material.law.interfaces.empty())

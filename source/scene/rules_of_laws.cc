@@ -93,9 +93,17 @@ namespace PeriDeal
         "Surface correction",
         "found '" + body.peridynamics.text("Surface correction") +
           "', whose factors of bonds are those of linear forces; with 'Law = plastic' in section 'Material' use 'auto', 'fictitious nodes' or 'none'.");
-      const bool is_warm = body.elasticity.computes_temperature ||
-                           !is_zero(body.elasticity.temperature_change);
-      refuse(is_warm, "which knows no 'Temperature change' (section 'Elasticity').");
+      const bool is_warm = is_warm_body(body);
+      refuse(
+        coupled && is_warm,
+        "which knows no 'Temperature change' (section 'Elasticity') in 'coupled'; use 'Models = finite elements' or 'peridynamics'.");
+      for (const auto &[entry, formula] :
+           {std::make_pair("Yield stress", *body.material.law.yield_stress),
+            std::make_pair("Hardening modulus", body.material.law.hardening)})
+        body.material.refuse(
+          !is_warm && formula.depends_on_temperature(),
+          entry,
+          "depends on T, but the temperature does not change: 'Temperature change' in section 'Elasticity' is 0.");
       body.elasticity.refuse(
         body.elasticity.solver == ElasticSolver::linear,
         "Solver",
@@ -287,7 +295,7 @@ namespace PeriDeal
     refuse_user_law(body, by_elements, coupled);
     const bool is_warm = body.elasticity.computes_temperature ||
                          !is_zero(body.elasticity.temperature_change);
-    material.refuse(by_elements && is_warm,
+    material.refuse(by_elements && is_warm && !material.law.yields(),
                     "Law",
                     "found '" + material.text("Law") +
                       "', which knows no 'Temperature change' (section 'Elasticity'), beside or "

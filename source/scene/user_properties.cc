@@ -39,14 +39,4 @@ namespace PeriDeal
       }
     return of_phases;
   }
-
-
-  std::string user_law_text(const Material &material)
-  {
-    const auto &law = material.law;
-    return law.kind != SolidLaw::user && law.kind != SolidLaw::user_bonds ?
-             "" :
-             law.user.library + ", properties: " + std::to_string(law.user.properties.size()) +
-               ", states: " + std::to_string(law.user.n_states);
-  }
 } // namespace PeriDeal

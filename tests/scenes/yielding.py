@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Bodies that yield: limit loads, what is left of strains, energy, any number of processes.
 
-    yielding.py ring | plate | motion
+    yielding.py ring | plate | motion | warm
 
 Bounds that follow from no theory are about 1.5 times the gap that was measured; the comment beside them gives it.
 """
@@ -99,5 +99,62 @@ def motion():
     check(abs(drift) < 1e-9 * work, f"energy is kept: {drift} of {work}")
 
 
+WARM = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = finite elements, peridynamics
+Domain/Lower corner = 0, 0
+Domain/Upper corner = 2, 1
+Domain/Cells = 8, 4
+Material/Young modulus = 1000
+Material/Poisson ratio = 0.3
+Material/Thermal expansion = 1e-5
+Material/Law = plastic
+Material/Yield stress = 1.2 - 0.002*T
+Material/Hardening modulus = 50
+Elasticity/Solver = newton
+Elasticity/Temperature change = computed
+Initial and source/Source = if(t < 1, 300, -300)
+Time/End time = 2
+Time/Time step = 0.02
+Output/Write every = 0.2
+Output/Line = 0.5,0.5 ; 1.5,0.5 ; 3
+Output/Fields = none
+Solver/Tolerance = 1e-12
+""")
+HELD = {"Boundary conditions/Displacement": "left: 0, 0; right: 0, 0; bottom: 0, 0; top: 0, 0"}
+FREE = {"Elasticity/Plane": "strain", "Boundary conditions/Symmetry": "left, bottom"}
+
+
+def heated(stiffness, share):
+    """Stress over the times of WARM of a body that is held where it would grow, by its stiffness there and what plastic strain has there of the equivalent one: out of a plane 1, in a plane of equal stresses 1/2."""
+    stress = {}
+    plastic = kappa = 0.0
+    for k in range(1, 101):
+        T = 300 * 0.02 * min(k, 100 - k)
+        trial = -stiffness * (1e-5 * T + plastic)
+        over = abs(trial) - (1.2 - 0.002 * T) - 50 * kappa
+        if over > 0:
+            grown = over / (share * stiffness + 50)
+            kappa += grown
+            plastic += math.copysign(share * grown, trial)
+        stress[round(0.02 * k, 10)] = -stiffness * (1e-5 * T + plastic)
+    return stress
+
+
+def warm():
+    """Plates that are heated as a whole and cooled: held on all sides in plane stress; free in plane strain, where the strain out of the plane is held."""
+    table = Comparison("Heated, yielding, cooled")
+    cases = {"held": (HELD, "sxx", heated(1000 / 0.7, 0.5)), "free": (FREE, "szz", heated(1000, 1))}
+    for name, (sides, column, expected) in cases.items():
+        for more, ranks in (({}, 1), ({"Elasticity/Model": "correspondence", "Models": "peridynamics"}, 1), ({}, 2)):
+            run = run_scene(WARM, {**sides, **more}, ranks=ranks)
+            for model in (PD,) if more else (FE, PD):
+                for time in (0.2, 0.6, 1.0, 1.4, 2.0):
+                    row = next(row for row in run.rows(model) if abs(row["x"] - 1) < 1e-9 and abs(row["time"] - time) < 1e-9)
+                    table.add(f"{name}, {more.get('Elasticity/Model', model)}, {ranks} processes, t = {time}", row[column], expected[time], relative=1e-8)
+    table.show()
+
+
 if __name__ == "__main__":
-    run_parts(ring, plate, motion)
+    run_parts(ring, plate, motion, warm)

@@ -237,7 +237,8 @@ Material/Law=plastic & Material/Yield stress=1 & Elasticity/Kinematics=full & El
 Material/Law=plastic & Material/Yield stress=1 & Material/Fracture energy=1 & Elasticity/Solver=newton => 'Law' | do not break
 Material/Law=plastic & Material/Yield stress=1 & Models=coupled & Coupling/Zone=everywhere & Elasticity/Solver=newton => 'Law' | 'plastic' | 'coupled'
 Material/Law=plastic & Material/Yield stress=1 & Peridynamics/Surface correction=moments & Elasticity/Solver=newton => 'Surface correction' | 'moments' | 'fictitious nodes'
-Material/Law=plastic & Material/Yield stress=1 & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 & Elasticity/Solver=newton => 'Law' | 'plastic' | 'Temperature change'
+Material/Law=plastic & Material/Yield stress=1 & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 & Elasticity/Solver=newton & Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Elasticity/Model=correspondence => 'Law' | 'plastic' | 'Temperature change' | 'coupled'
+Material/Law=plastic & Material/Yield stress=2 - T & Elasticity/Solver=newton => 'Yield stress' | depends on T | 'Temperature change'
 Material/Law=plastic & Material/Yield stress=1 & Peridynamics/Operator form=lattice & Elasticity/Solver=newton => 'Operator form' | 'Law' | 'auto'
 Material/Law=formula & Material/Bond force=s & Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=splice & Elasticity/Solver=conjugate gradients => 'Scheme' | 'splice' | 'Law = linear'
 Material/Law=formula => 'Bond force' | is empty

@@ -79,10 +79,18 @@ namespace PeriDeal
       }
     };
 
-    /** @param sum D, of the e_p of the state */
-    Answer answer(const double theta, const double sum, const State &state) const
+    /**
+     * @param theta less what the thermal strain makes within the dimensions of the family
+     * @param sum D, of the e_p of the state
+     * @param thermal that strain, alpha dT, which plane strain has out of the plane, too
+     */
+    Answer answer(const double theta,
+                  const double sum,
+                  const State &state,
+                  const double thermal = 0.) const
     {
-      Answer result = is_stress ? in_plane_stress(theta, sum, state) : confined(theta, sum, state);
+      Answer       result = is_stress ? in_plane_stress(theta, sum, state) :
+                                        confined(theta, sum, state, is_strain ? thermal : 0.);
       const double strain = state.strain + result.change.strain;
       result.stored += 0.5 * hardening * strain * strain;
       result.dissipated = yield_stress * result.change.strain;
@@ -95,11 +103,15 @@ namespace PeriDeal
       return yield_stress + hardening * state.strain;
     }
 
-    /** In 3D and plane strain. */
-    Answer confined(const double theta, const double sum, const State &state) const
+    /** In 3D and plane strain. @param thermal of the latter */
+    Answer confined(const double in_family,
+                    const double sum,
+                    const State &state,
+                    const double thermal) const
     {
-      const double outside = is_strain ? -theta / 3. - state.plane : 0.; // g
-      const double all     = sum + 1.5 * shear * outside * outside;      // D'
+      const double theta   = in_family - thermal;                                  // all of it
+      const double outside = is_strain ? -theta / 3. - thermal - state.plane : 0.; // g
+      const double all     = sum + 1.5 * shear * outside * outside;                // D'
       const double stress = std::sqrt(6. * shear * all), most = limit(state);
       Answer       result;
       double       lost = 0., slope = 0.; // 1 - r; of -r over D'

@@ -59,13 +59,14 @@ namespace PeriDeal
     /** What a law is asked about: a strain that is reached straight from the accepted one. */
     struct Trial
     {
-      Tensor        strain; // in plane stress what it has out of the plane is not looked at
+      Tensor        strain; // less that by temperature; in plane stress in the plane alone
       const double *parameters;
-      const double *state;                // the accepted one
-      double        time = 0., step = 0.; // at its end, since the accepted one
-      double        instant   = 1.;       // what may stand for a step of no time
-      unsigned int  increment = 1;        // which step
-      double        length    = 0.;       // of the element around the point
+      const double *state;                          // the accepted one
+      double        time = 0., step = 0.;           // at its end, since the accepted one
+      double        instant     = 1.;               // what may stand for a step of no time
+      unsigned int  increment   = 1;                // which step
+      double        length      = 0.;               // of the element around the point
+      double        temperature = 0., warming = 0.; // at its end, since the accepted one
       unsigned int  element = 0, point = 0;
     };
 

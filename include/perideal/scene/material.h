@@ -63,6 +63,7 @@ namespace PeriDeal
         BreakCriterion                  criterion = BreakCriterion::stretch;
         std::optional<MaterialProperty> critical_stress;
         std::optional<MaterialProperty> unbreakable; // greater than 0 where bonds never break
+        std::optional<Expression>       rate_factor; // of limits, by the rate of the stretch
 
         bool by_stress() const
         {
@@ -103,6 +104,12 @@ namespace PeriDeal
       bool yields() const
       {
         return kind == SolidLaw::plastic;
+      }
+
+      bool yield_depends_on_temperature() const
+      {
+        return yields() &&
+               (yield_stress->depends_on_temperature() || hardening.depends_on_temperature());
       }
 
       /** Bonds lose their force little by little. */

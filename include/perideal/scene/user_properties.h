@@ -15,7 +15,4 @@ namespace PeriDeal
    * its own those of the body. Throws UserError.
    */
   std::vector<std::vector<double>> user_properties(const Material &material);
-
-  /** What the summary says of a law of the user; empty: there is none. */
-  std::string user_law_text(const Material &material);
 } // namespace PeriDeal

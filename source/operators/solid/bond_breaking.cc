@@ -54,6 +54,10 @@ namespace PeriDeal
       screen = std::make_unique<StretchScreen<dim>>(bonds.families, criterion->least_stretches());
     if (bonds.kinematics.is_full() && !criterion->softens())
       watch_limits();
+    if (const auto &factor = body.material.law.breaking.rate_factor)
+      rates = std::make_unique<StretchRates<dim>>(bonds.families.nodes(),
+                                                  *factor,
+                                                  bonds.kinematics.is_full());
     loaded_side = loads.sides_nearby(bonds.families);
   }
 
@@ -77,6 +81,8 @@ namespace PeriDeal
   template <int dim>
   void BondBreaking<dim>::follow_body(const Vector &u, const double t)
   {
+    if (rates)
+      rates->take(u, t);
     const NodeQuantity asked   = criterion->asks_for();
     bool               changed = criterion->take_time(t, this->temperatures);
     if (asked != NodeQuantity::none)
@@ -118,11 +124,14 @@ namespace PeriDeal
     // The same digits at both ends of a bond.
     const BondKinematics<dim> &kinematics = bonds.kinematics;
     const Tensor<1, dim>       xi         = bonds.ends.vector(i, bond.neighbor);
-    return criterion->measure(i,
-                              bonds.ends.origin(bond.neighbor),
-                              kinematics.extension_moment(u, i, bond),
-                              kinematics.is_full() ? kinematics.length(bond) * xi.norm() :
-                                                     bond.moment * xi);
+    BondMeasure                found      = criterion->measure(
+      i,
+      bonds.ends.origin(bond.neighbor),
+      kinematics.extension_moment(u, i, bond),
+      kinematics.is_full() ? kinematics.length(bond) * xi.norm() : bond.moment * xi);
+    if (rates && found.exceeds())
+      found.limit *= rates->factor(i, bond.neighbor, xi);
+    return found;
   }
 
 
@@ -389,6 +398,8 @@ namespace PeriDeal
       return;
     if (criterion)
       this->exchange_history(archive);
+    if (rates)
+      rates->exchange(archive, keys);
     const std::vector<BondState::Kept> list = bonds.rows.exchange(archive, keys, n_first);
     if (criterion && criterion->softens())
       exchange_histories(bonds.rows, archive, keys, BondSoftness::n);

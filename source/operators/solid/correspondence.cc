@@ -139,10 +139,9 @@ namespace PeriDeal
                                       const BondEnds<dim>       &ends,
                                       BondTable<dim>            &bonds,
                                       const NodeLaws<dim>       &laws,
-                                      const ThermalStrains      &thermal,
                                       const BodyParameters<dim> &body)
     : shapes(families, ends, bonds, laws)
-    , stresses(families.nodes(), thermal, body)
+    , stresses(families.nodes(), body)
     , families(families)
     , ends(ends)
     , bonds(bonds)
@@ -230,21 +229,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Correspondence<dim>::find_at(const double      *u,
-                                    const unsigned int i,
-                                    const Span        &inside,
-                                    const Span        &outside) const
-  {
-    const Tensor<2, dim>  inverse(shapes[i].inverse);
-    const Tensor<2, dim> &slopes = trial.slopes[i] =
-      sum_of_changes(bonds, ends, u, i, inside, outside) * inverse;
-    ElasticSums sums;
-    add_elastic(sums, shapes, bonds, ends, u, i, slopes, stresses.flows(), inside, outside);
-    settle(i, sums.squares, sums.products);
-  }
-
-
-  template <int dim>
   void Correspondence<dim>::find_on_lattice(const double *u) const
   {
     const bool flows = stresses.flows();
@@ -311,12 +295,16 @@ namespace PeriDeal
     trial.pulls.clear();
     if (lattice.sums)
       find_on_lattice(values);
-    for_each_family(bonds,
-                    shapes.size(),
-                    [&](const unsigned int i, const Span &inside, const Span &outside) {
-                      if (!bonds.is_on_lattice(i) && shapes[i].share > 0.)
-                        find_at(values, i, inside, outside);
-                    });
+    const auto find_at = [&](const unsigned int i, const Span &inside, const Span &outside) {
+      if (bonds.is_on_lattice(i) || shapes[i].share == 0.)
+        return;
+      const Tensor<2, dim> &slopes = trial.slopes[i] =
+        sum_of_changes(bonds, ends, values, i, inside, outside) * Tensor<2, dim>(shapes[i].inverse);
+      ElasticSums sums;
+      add_elastic(sums, shapes, bonds, ends, values, i, slopes, stresses.flows(), inside, outside);
+      settle(i, sums.squares, sums.products);
+    };
+    for_each_family(bonds, shapes.size(), find_at);
     u.set_ghost_state(false);
     stresses.throw_faults();
     trial.numbers.update_ghost_values();
@@ -388,6 +376,15 @@ namespace PeriDeal
     u.set_ghost_state(false);
     std::copy(y.begin(), y.begin() + y.locally_owned_size(), trial.forces.begin());
     trial.has_forces = true;
+  }
+
+
+  template <int dim>
+  void Correspondence<dim>::take_temperatures(const Vector &changes)
+  {
+    stresses.take_temperatures(changes);
+    trial.known    = false;
+    accepted.warms = changes.size() > 0;
   }
 
 
@@ -496,6 +493,7 @@ namespace PeriDeal
                                             trial.forces,
                                             stored(u, trial.forces),
                                             n_flow,
+                                            accepted.warms ? plastic_work(u) : 0.,
                                             families.nodes().communicator(),
                                             flows);
     const bool   changes    = !stresses.same_states();

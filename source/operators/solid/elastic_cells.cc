@@ -118,7 +118,7 @@ namespace PeriDeal
         else
           for (unsigned int a = 0; a < n; ++a)
             change += temperatures(data.indices[a]) * values.shape_value(a, q);
-        const double strain   = thermal_strain(body, p, change);
+        const double strain   = stresses ? 0. : thermal_strain(body, p, change); // it is in them
         const double pressure = (dim * lambda + 2. * mu) * strain;
         const double density  = body.elasticity.is_static() ? 1. : body.material.density.value(p);
         data.thermal_energy += 0.5 * dim * pressure * strain * JxW;

@@ -126,6 +126,8 @@ namespace PeriDeal
     // Where tips cut in part, ends on sides are none.
     cells.by_cracks.set(this->history.pieces(this->cracks_of, !body.cuts_in_part_at_tips()), 0.);
     find_conditions();
+    if (cells.stresses)
+      cells.stresses->take_temperatures(body, this->temperature_change());
     assemble(false);
     if (breaking && law)
       tell_damage(*breaking, law->nodal);
@@ -445,6 +447,8 @@ namespace PeriDeal
   {
     this->keep_temperature_change(nodal);
     this->set_contact_strains();
+    if (cells.stresses)
+      cells.stresses->take_temperatures(body, this->temperature_change());
     assemble(true);
     this->keep_constant_loads();
   }
@@ -730,6 +734,8 @@ namespace PeriDeal
                                                                       n_bonds,
                                                   nodes->get_mpi_communicator()));
     size.memory   = stiffness.memory_consumption() + positions.capacity() * sizeof(Point<dim>);
+    if (cells.stresses)
+      size.memory += cells.stresses->memory_consumption();
     if (zone_bonds)
       size.memory += zone_bonds->coupling().memory_consumption();
     if (breaking)

@@ -53,7 +53,7 @@ namespace PeriDeal
     : laws(coupling.families().nodes(), body)
     , ends(coupling.families())
     , rows(coupling.families(), laws, ends, body, reaching(coupling))
-    , nodal(coupling.families(), ends, completed(rows, laws, body), laws, thermal, body)
+    , nodal(coupling.families(), ends, completed(rows, laws, body), laws, body)
     , found(interleaved(*coupling.families().nodes().partitioner(), dim))
   {
     const NodeFamilies<dim> &shares = *coupling.node_families();

@@ -8,7 +8,7 @@
 #include <perideal/laws/linear_stress.h>
 #include <perideal/laws/nodal_stiffness.h>
 #include <perideal/operators/solid/node_stresses.h>
-#include <perideal/operators/solid/stress_laws.h>
+#include <perideal/operators/solid/thermal_strains.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,38 +21,68 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  NodeStresses<dim>::NodeStresses(const Nodes<dim>          &nodes,
-                                  const ThermalStrains      &thermal,
-                                  const BodyParameters<dim> &body)
+  NodeStresses<dim>::NodeStresses(const Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : nodes(nodes)
-    , thermal(thermal)
+    , body(body)
+    , law(stress_law_of(body))
     , steps(StressSteps::of_scene(body))
   {
-    PlacedStressLaw<dim> placed = stress_law_of(body);
-    if (!placed.law)
-      placed = linear_stress_law(body);
-    law            = std::move(placed.law);
-    kind.j2        = dynamic_cast<const J2Plasticity *>(law.get());
-    kind.is_linear = dynamic_cast<const LinearStress *>(law.get()) != nullptr;
+    if (!law.law)
+      law = linear_stress_law(body);
+    kind.j2        = dynamic_cast<const J2Plasticity *>(law.law.get());
+    kind.is_linear = dynamic_cast<const LinearStress *>(law.law.get()) != nullptr;
     kind.is_full   = body.elasticity.has_full_kinematics();
+    find_parameters();
+    states.resize(nodes.n_owned() * law.law->n_state(), 0.);
+    next = states;
+    responses.resize(nodes.n_owned());
+  }
+
+
+  template <int dim>
+  void NodeStresses<dim>::find_parameters()
+  {
     std::string message;
-    const auto  n = static_cast<std::ptrdiff_t>(law->n_parameters());
+    const auto  n = static_cast<std::ptrdiff_t>(law.law->n_parameters());
+    parameters.clear();
+    number_of.clear();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
         const Point<dim> &p = nodes.position(i);
-        if (flows() && message.empty() && !(body.material.law.yield_stress->value(p) > 0.))
-          message =
-            body.material.where("Yield stress") + " is out of range at " + place_text(p) + ".";
-        const std::vector<double> here = placed.parameters(p);
+        const double      T = warm.temperatures.empty() ? temperature_at_start(body, p) :
+                                                          warm.temperatures[i];
+        if (message.empty())
+          message = yield_stress_fault(body.material, p, T);
+        const std::vector<double> here = law.parameters(p, T);
         if (i == 0 || !std::equal(here.begin(), here.end(), parameters.end() - n))
           parameters.insert(parameters.end(), here.begin(), here.end());
         number_of.push_back(
-          n == 0 ? 0 : static_cast<std::uint32_t>(parameters.size() / law->n_parameters() - 1));
+          n == 0 ? 0 : static_cast<std::uint32_t>(parameters.size() / law.law->n_parameters() - 1));
       }
     throw_on_all_if_any(nodes.communicator(), message);
-    states.resize(nodes.n_owned() * law->n_state(), 0.);
-    next = states;
-    responses.resize(nodes.n_owned());
+  }
+
+
+  template <int dim>
+  void NodeStresses<dim>::take_temperatures(const Vector &changes)
+  {
+    const bool is_first = warm.strains.empty();
+    if (changes.size() == 0 && is_zero(body.elasticity.temperature_change))
+      return;
+    warm.strains.clear();
+    warm.temperatures.clear();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const Point<dim> &p = nodes.position(i);
+        const double change = changes.size() == 0 ? body.elasticity.temperature_change.value(p) :
+                                                    changes.local_element(i);
+        warm.strains.push_back(body.material.thermal_expansion.value(p) * change);
+        warm.temperatures.push_back(temperature_of(body, change));
+      }
+    if (is_first)
+      warm.accepted = warm.temperatures;
+    if (law.depends_on_temperature)
+      find_parameters();
   }
 
 
@@ -70,22 +100,25 @@ namespace PeriDeal
         responses[i] = StressLaw::Response();
         return keep_lower(inverted, turned_inside_out(nodes.position(i), ratio, steps.now));
       }
-    SymmetricTensor<2, dim> of_gradient = strain(slopes);
-    for (unsigned int d = 0; thermal.any() && d < dim; ++d)
-      of_gradient[d][d] -= thermal[i];
     StressLaw::Tangent  full;
     StressLaw::Tangent *wanted = tangent == nullptr ? nullptr : &full;
-    StressLaw::Trial    at{in_space<dim>(of_gradient),
-                        parameters.data() + number_of[i] * law->n_parameters(),
-                        states.data() + i * law->n_state()};
-    double *const       to = next.data() + i * law->n_state();
+    StressLaw::Trial    at{in_space<dim>(strain(slopes)),
+                        parameters.data() + number_of[i] * law.law->n_parameters(),
+                        states.data() + i * law.law->n_state()};
+    double *const       to = next.data() + i * law.law->n_state();
+    if (!warm.strains.empty())
+      {
+        at.strain -= warm.strains[i] * unit_symmetric_tensor<3>();
+        at.temperature = warm.temperatures[i];
+        at.warming     = warm.temperatures[i] - warm.accepted[i];
+      }
     if (flows())
       responses[i] = kind.j2->update_with(flow, at, to, wanted);
     else
       {
         at.length    = std::pow(nodes.volume(i), 1. / dim);
         at.element   = nodes.partitioner()->local_to_global(i);
-        responses[i] = steps.update(*law, at, to, wanted);
+        responses[i] = steps.update(*law.law, at, to, wanted);
       }
     if (tangent != nullptr)
       *tangent = in_body<dim>(full);
@@ -126,7 +159,7 @@ namespace PeriDeal
   void NodeStresses<dim>::throw_faults() const
   {
     const Trip worst = kind.is_full ? std::exchange(inverted, Trip()) : Trip();
-    steps.throw_faults(*law, nodes.communicator());
+    steps.throw_faults(*law.law, nodes.communicator());
     if (kind.is_full)
       throw_lowest_if_any(nodes.communicator(), worst);
   }
@@ -144,6 +177,7 @@ namespace PeriDeal
   {
     if (flows)
       states = next;
+    warm.accepted = warm.temperatures;
     steps.accept(t, changes);
   }
 
@@ -152,11 +186,11 @@ namespace PeriDeal
   std::vector<std::pair<std::string, std::vector<double>>> NodeStresses<dim>::shown() const
   {
     std::vector<std::pair<std::string, std::vector<double>>> list;
-    for (const auto &[name, number] : law->shown())
+    for (const auto &[name, number] : law.law->shown())
       {
         list.emplace_back(name, std::vector<double>());
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-          list.back().second.push_back(states[i * law->n_state() + number]);
+          list.back().second.push_back(states[i * law.law->n_state() + number]);
       }
     return list;
   }
@@ -165,7 +199,7 @@ namespace PeriDeal
   template <int dim>
   void NodeStresses<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
-    const unsigned int n = law->n_state();
+    const unsigned int n = law.law->n_state();
     Vector             number(nodes.partitioner());
     for (unsigned int s = 0; s < n; ++s)
       {
@@ -175,6 +209,7 @@ namespace PeriDeal
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           states[n * i + s] = number.local_element(i);
       }
+    warm.accepted = warm.temperatures; // which the operator has already
     steps.exchange(archive);
   }
 
@@ -182,7 +217,9 @@ namespace PeriDeal
   template <int dim>
   std::size_t NodeStresses<dim>::memory_consumption() const
   {
-    return (parameters.capacity() + states.capacity() + next.capacity()) * sizeof(double) +
+    return (parameters.capacity() + warm.strains.capacity() + warm.temperatures.capacity() +
+            warm.accepted.capacity() + states.capacity() + next.capacity()) *
+             sizeof(double) +
            number_of.capacity() * sizeof(std::uint32_t) +
            responses.capacity() * sizeof(StressLaw::Response);
   }

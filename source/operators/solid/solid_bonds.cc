@@ -126,7 +126,7 @@ namespace PeriDeal
     if (!body.elasticity.is_correspondence())
       sums.take_lattice();
     if (body.elasticity.is_correspondence())
-      by_family = std::make_unique<Correspondence<dim>>(families, ends, rows, laws, thermal, body);
+      by_family = std::make_unique<Correspondence<dim>>(families, ends, rows, laws, body);
     else if (of_scene.yields())
       by_family = std::make_unique<YieldingFamilies<dim>>(families, ends, rows, laws, body);
   }

@@ -97,6 +97,8 @@ namespace PeriDeal
       [&](const unsigned int i) { return this->thermal_strain_at(i); },
       nodes.communicator());
     solid.kinematics.take_thermal_strains();
+    if (solid.by_family)
+      solid.by_family->take_temperatures(this->temperature_change());
     solid.forces.forget_exceeding();
     this->set_contact_strains();
     find_thermal_loads();
@@ -106,7 +108,8 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_thermal_loads()
   {
-    if (solid.thermal.any() && !solid.forces.is_bond_by_bond()) // else it is in the extensions
+    // Else it is in the extensions, or in the stresses.
+    if (solid.thermal.any() && !solid.forces.is_bond_by_bond() && !solid.flows())
       {
         scratch = 0.;
         if (solid.by_family)

@@ -8,6 +8,7 @@
 #include <perideal/base/worst_trip.h>
 #include <perideal/mesh/node_keys.h>
 #include <perideal/operators/solid/stress_cells.h>
+#include <perideal/operators/solid/thermal_strains.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,7 @@ namespace PeriDeal
                                 const StressSteps     &steps,
                                 const Share           &share)
     : dofs(dofs)
-    , of_points(std::move(law.law))
+    , of_points(std::move(law))
     , cracks(cracks)
     , first(dofs.get_triangulation().n_active_cells(), 0)
     , share(share)
@@ -64,7 +65,7 @@ namespace PeriDeal
                                                            at.points.size(),
                                                            kinematics.projects);
     for (LawPoint &point : at.points)
-      point.state.resize(of_points->n_state());
+      point.state.resize(of_points.law->n_state());
     std::size_t n_points = 0;
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -74,11 +75,11 @@ namespace PeriDeal
           at.strains.reinit(cell);
           for (const auto &place : at.strains.values().get_quadrature_points())
             {
-              const std::vector<double> of_point = law.parameters(place);
+              const std::vector<double> of_point = of_points.parameters_at_start(place);
               all_parameters.insert(all_parameters.end(), of_point.begin(), of_point.end());
             }
         }
-    states.resize(n_points * of_points->n_state(), 0.);
+    states.resize(n_points * of_points.law->n_state(), 0.);
   }
 
 
@@ -113,13 +114,13 @@ namespace PeriDeal
     double kept   = u == nullptr ? 1. : cracks.kept_of_removed(cell);
     if (u != nullptr && share)
       kept *= share(cell);
-    const double *of_point = all_parameters.data() + first_of(cell) * of_points->n_parameters();
+    const double *of_point = all_parameters.data() + first_of(cell) * of_points.law->n_parameters();
     for (unsigned int q = 0; q < at.points.size(); ++q)
       {
         LawPoint &point  = at.points[q];
         point.weight     = kept * at.strains.values().JxW(q);
-        trial.parameters = of_point + q * of_points->n_parameters();
-        trial.state      = accepted + q * of_points->n_state();
+        trial.parameters = of_point + q * of_points.law->n_parameters();
+        trial.state      = accepted + q * of_points.law->n_state();
         trial.point      = q;
         if (at.deformed && (point.weight == 0. || !holds(q)))
           {
@@ -127,8 +128,15 @@ namespace PeriDeal
             point.tangent  = 0.;
             continue;
           }
-        trial.strain   = at.deformed ? at.deformed->strain(q) : at.strains.strain(q, at.u);
-        point.response = steps.update(*of_points,
+        trial.strain = at.deformed ? at.deformed->strain(q) : at.strains.strain(q, at.u);
+        if (!warm.strains.empty() && u != nullptr)
+          {
+            const std::size_t n = first_of(cell) + q;
+            trial.strain -= warm.strains[n] * unit_symmetric_tensor<3>();
+            trial.temperature = warm.temperatures[n];
+            trial.warming     = warm.temperatures[n] - warm.accepted[n];
+          }
+        point.response = steps.update(*of_points.law,
                                       trial,
                                       point.state.data(),
                                       with_tangents ? &point.tangent : nullptr,
@@ -141,7 +149,7 @@ namespace PeriDeal
   const std::vector<typename StressCells<dim>::LawPoint>
     &StressCells<dim>::points_of(const Cell &cell, const Vector &u) const
   {
-    look_at(cell, &u, states.data() + first_of(cell) * of_points->n_state(), false);
+    look_at(cell, &u, states.data() + first_of(cell) * of_points.law->n_state(), false);
     return at.points;
   }
 
@@ -155,11 +163,11 @@ namespace PeriDeal
     constexpr unsigned int n_parts = Strain::n_independent_components;
     const unsigned int     n       = at.u.size();
     if (u != nullptr)
-      look_at(cell, u, states.data() + first_of(cell) * of_points->n_state(), true);
+      look_at(cell, u, states.data() + first_of(cell) * of_points.law->n_state(), true);
     else
       look_at(cell,
               nullptr,
-              std::vector<double>(at.points.size() * of_points->n_state(), 0.).data(),
+              std::vector<double>(at.points.size() * of_points.law->n_state(), 0.).data(),
               true);
     matrix.reinit(n, n);
     FullMatrix<double> strains(n, n_parts), stresses(n, n_parts);
@@ -281,19 +289,71 @@ namespace PeriDeal
 
 
   template <int dim>
+  void StressCells<dim>::take_temperatures(const BodyParameters<dim> &body, const Vector &changes)
+  {
+    const bool is_warm = changes.size() > 0 || !is_zero(body.elasticity.temperature_change);
+    if (!is_warm && !body.material.law.yields())
+      return;
+    const unsigned int  n_points = at.points.size(), n_parameters = of_points.law->n_parameters();
+    std::vector<double> strains(n_points);
+    std::string         message;
+    const bool          is_first = warm.strains.empty();
+    warm.strains.clear();
+    warm.temperatures.clear();
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          at.strains.reinit(cell);
+          cell->get_dof_indices(at.nodes);
+          for (unsigned int q = 0; q < n_points; ++q)
+            {
+              const Point<dim> &p      = at.strains.values().quadrature_point(q);
+              double            change = 0.;
+              if (changes.size() == 0)
+                change = body.elasticity.temperature_change.value(p);
+              else
+                for (unsigned int a = 0; a < at.nodes.size(); ++a)
+                  change += changes(at.nodes[a]) * at.strains.values().shape_value(a, q);
+              const double T = temperature_of(body, change);
+              strains[q]     = body.material.thermal_expansion.value(p) * change;
+              if (message.empty())
+                message = yield_stress_fault(body.material, p, T);
+              if (is_warm)
+                warm.temperatures.push_back(T);
+              if (!of_points.depends_on_temperature)
+                continue;
+              const std::vector<double> here = of_points.parameters(p, T);
+              std::copy(here.begin(),
+                        here.end(),
+                        all_parameters.begin() + (first_of(cell) + q) * n_parameters);
+            }
+          if (!is_warm)
+            continue;
+          at.strains.project(strains);
+          warm.strains.insert(warm.strains.end(), strains.begin(), strains.end());
+        }
+    if (is_first)
+      warm.accepted = warm.temperatures;
+    throw_on_all_if_any(dofs.get_communicator(), message);
+  }
+
+
+  template <int dim>
   double StressCells<dim>::accept(const Vector &u, const double t)
   {
     double dissipated = 0.;
     begun             = true;
     steps.now         = t;
-    if (of_points->n_state() == 0 && !of_points->may_fail()) // nothing to remember or dissipate
+    warm.accepted     = warm.temperatures;
+    if (of_points.law->n_state() == 0 &&
+        !of_points.law->may_fail()) // nothing to remember or dissipate
       {
         steps.accept(t, false);
         return 0.;
       }
     bool changes = false;
     for_each(u, [&](const Cell &cell, const std::vector<LawPoint> &points) {
-      auto next = states.begin() + first_of(cell) * of_points->n_state();
+      auto next = states.begin() + first_of(cell) * of_points.law->n_state();
       for (const LawPoint &point : points)
         {
           dissipated += point.weight * point.response.dissipated;
@@ -313,7 +373,7 @@ namespace PeriDeal
     // Cells have keys by the one node that such an element has in each.
     DoFHandler<dim>                      cells(dofs.get_triangulation());
     const FE_DGQ<dim>                    middle(0);
-    const unsigned int                   n_values = at.points.size() * of_points->n_state();
+    const unsigned int                   n_values = at.points.size() * of_points.law->n_state();
     std::vector<types::global_dof_index> node(1);
     cells.distribute_dofs(middle);
     const Utilities::MPI::Partitioner layout(cells.locally_owned_dofs(), cells.get_communicator());
@@ -324,11 +384,12 @@ namespace PeriDeal
           {
             cell->get_dof_indices(node);
             act(values.begin() + n_values * layout.global_to_local(node[0]),
-                states.begin() + first[cell->active_cell_index()] * of_points->n_state());
+                states.begin() + first[cell->active_cell_index()] * of_points.law->n_state());
           }
     };
     archive.exchange("begun", begun);
     steps.exchange(archive);
+    warm.accepted = warm.temperatures; // which the operator has already
     if (n_values == 0)
       return;
     for_each_cell([&](auto value, auto state) { std::copy_n(state, n_values, value); });

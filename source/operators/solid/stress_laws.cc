@@ -9,6 +9,7 @@
 #include <perideal/laws/user_stress.h>
 #include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/solid/stress_laws.h>
+#include <perideal/operators/solid/thermal_strains.h>
 #include <perideal/scene/orthotropy.h>
 #include <perideal/scene/user_properties.h>
 
@@ -26,12 +27,15 @@ namespace PeriDeal
     {
       const Material &material = body.material;
       auto law = std::make_unique<const J2Plasticity>(stress_state_of(dim, body.elasticity.plane));
-      const auto parameters = [&material, &law = *law](const Point<dim> &p) {
+      const auto parameters = [&material, &law = *law](const Point<dim> &p, const double T) {
         return law.parameters(material.moduli(p),
-                              material.law.yield_stress->value(p),
-                              material.law.hardening.value(p));
+                              material.law.yield_stress->value(p, T),
+                              material.law.hardening.value(p, T));
       };
-      return {std::move(law), parameters};
+      return {std::move(law),
+              parameters,
+              material.law.yield_depends_on_temperature(),
+              [&body](const Point<dim> &p) { return temperature_at_start(body, p); }};
     }
 
 
@@ -39,7 +43,7 @@ namespace PeriDeal
     PlacedStressLaw<dim> neo_hooke(const BodyParameters<dim> &body)
     {
       return {std::make_unique<const NeoHooke>(stress_state_of(dim, body.elasticity.plane)),
-              [&material = body.material](const Point<dim> &p) {
+              [&material = body.material](const Point<dim> &p, const double) {
                 const Moduli moduli = material.moduli(p);
                 if (!std::isfinite(moduli.bulk))
                   report_formula_error(
@@ -67,7 +71,7 @@ namespace PeriDeal
                                            dim,
                                            stress_state_of(dim, body.elasticity.plane),
                                            numbers),
-        [&material = body.material](const Point<dim> &p) {
+        [&material = body.material](const Point<dim> &p, const double) {
           std::vector<double> parameters(3, 0.);
           for (unsigned int d = 0; d < dim; ++d)
             parameters[d] = p[d];
@@ -103,9 +107,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::string yield_stress_fault(const Material   &material,
+                                 const Point<dim> &p,
+                                 const double      temperature)
+  {
+    if (!material.law.yields())
+      return "";
+    const bool is_weak = !(material.law.yield_stress->value(p, temperature) > 0.),
+               softens = !(material.law.hardening.value(p, temperature) >= 0.);
+    if (!is_weak && !softens)
+      return "";
+    const MaterialProperty &formula = is_weak ? *material.law.yield_stress : material.law.hardening;
+    return "Entry " + material.where(is_weak ? "Yield stress" : "Hardening modulus") + ": not " +
+           (is_weak ? "greater than 0" : "0 or more") + " at " + place_text(p) +
+           (formula.depends_on_temperature() ? ", T = " + number_text(temperature) : "") + ".";
+  }
+
+
+  template <int dim>
   PlacedStressLaw<dim> linear_stress_law(const BodyParameters<dim> &body)
   {
-    return {std::make_unique<const LinearStress>(), [&body](const Point<dim> &p) {
+    return {std::make_unique<const LinearStress>(), [&body](const Point<dim> &p, const double) {
               return LinearStress::parameters(linear_stiffness(body, p));
             }};
   }
@@ -113,4 +135,5 @@ namespace PeriDeal
 
   PERIDEAL_INSTANTIATE_FUNCTION(stress_law_of);
   PERIDEAL_INSTANTIATE_FUNCTION(linear_stress_law);
+  PERIDEAL_INSTANTIATE_FUNCTION(yield_stress_fault);
 } // namespace PeriDeal

@@ -7,6 +7,8 @@
 #include <perideal/base/interleaved.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
+#include <perideal/operators/solid/stress_laws.h>
+#include <perideal/operators/solid/thermal_strains.h>
 #include <perideal/operators/solid/yielding_families.h>
 
 #include <algorithm>
@@ -29,21 +31,10 @@ namespace PeriDeal
     , ends(ends)
     , bonds(bonds)
     , laws(laws)
+    , of_scene(body)
   {
-    const Nodes<dim> &nodes    = families.nodes();
-    const Material   &material = body.material;
-    std::string       message;
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        const Point<dim> &p      = nodes.position(i);
-        const double      yields = material.law.yield_stress->value(p),
-                     hardening   = material.law.hardening.value(p);
-        if (message.empty() && !(yields > 0. && hardening >= 0.))
-          message = material.where(yields > 0. ? "Hardening modulus" : "Yield stress") +
-                    " is out of range at " + place_text(p) + ".";
-        materials.emplace_back(material.moduli(p), dim, body.elasticity.plane, yields, hardening);
-      }
-    throw_on_all_if_any(nodes.communicator(), message);
+    const Nodes<dim> &nodes = families.nodes();
+    find_materials({});
     states.resize(nodes.n_owned());
     trial.answers.resize(nodes.n_owned());
     for (BondRows<dim> *rows : {&bonds.body, &bonds.beyond})
@@ -68,8 +59,77 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void YieldingFamilies<dim>::find_materials(const std::vector<double> &temperatures)
+  {
+    const Nodes<dim> &nodes    = families.nodes();
+    const Material   &material = of_scene.material;
+    std::string       message;
+    materials.clear();
+    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+      {
+        const Point<dim> &p = nodes.position(i);
+        const double T = temperatures.empty() ? temperature_at_start(of_scene, p) : temperatures[i];
+        if (message.empty())
+          message = yield_stress_fault(material, p, T);
+        materials.emplace_back(material.moduli(p),
+                               dim,
+                               of_scene.elasticity.plane,
+                               material.law.yield_stress->value(p, T),
+                               material.law.hardening.value(p, T));
+      }
+    throw_on_all_if_any(nodes.communicator(), message);
+  }
+
+
+  template <int dim>
+  void YieldingFamilies<dim>::take_temperatures(const Vector &changes)
+  {
+    const Nodes<dim> &nodes = families.nodes();
+    trial.known             = false;
+    accepted.warms          = changes.size() > 0;
+    expansions.clear();
+    if (changes.size() == 0 && is_zero(of_scene.elasticity.temperature_change))
+      return;
+    std::vector<double> temperatures;
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      {
+        const Point<dim> &p      = nodes.position(i);
+        const double      change = changes.size() == 0 ?
+                                     of_scene.elasticity.temperature_change.value(p) :
+                                     changes.local_element(i);
+        expansions.push_back(of_scene.material.thermal_expansion.value(p) * change);
+        temperatures.push_back(temperature_of(of_scene, change));
+      }
+    if (of_scene.material.law.yield_depends_on_temperature())
+      find_materials(temperatures);
+  }
+
+
   namespace
   {
+    /**
+     * Take off stretches of a node's bonds what the temperature makes of them, and of the sum of
+     * S s. @param origin of a node on the other side
+     */
+    template <int dim, typename Origin>
+    void take_off(const BondRows<dim>       &rows,
+                  const Span                &span,
+                  const std::vector<double> &expansions,
+                  const unsigned int         i,
+                  const Origin              &origin,
+                  double                    *stretches,
+                  double                    &sum)
+    {
+      for (std::size_t k = span.begin; k < span.end; ++k)
+        {
+          const double thermal = 0.5 * (expansions[i] + expansions[origin(rows.neighbors[k])]);
+          stretches[k] -= thermal;
+          sum -= rows.squares[k] * thermal;
+        }
+    }
+
+
     /** Stretches of bonds of a node; returns the sum of S s. */
     template <int dim, typename Value>
     double find_stretches(const BondRows<dim> &rows,
@@ -135,13 +195,21 @@ namespace PeriDeal
         own,
         [&](const unsigned int j) { return images->value(ends.image(j)); },
         beyond);
+      if (!expansions.empty())
+        {
+          const auto origin = [&](const unsigned int j) { return ends.origin(j); };
+          take_off(bonds.body, inside, expansions, i, origin, body, sum);
+          take_off(bonds.beyond, outside, expansions, i, origin, beyond, sum);
+        }
+      const double thermal = expansions.empty() ? 0. : expansions[i];
       const double q = laws.weighted.local_element(i), volume = nodes.volume(i),
                    alpha = laws.stiffness(i), mean_stretch = sum / (volume * q),
                    squares =
                      sum_squares(bonds.body, inside.begin, inside.end, mean_stretch, body) +
                      sum_squares(bonds.beyond, outside.begin, outside.end, mean_stretch, beyond);
       OrdinaryPlasticity::Answer &answer = trial.answers[i];
-      answer = materials[i].answer(dim * mean_stretch, 0.5 * alpha / volume * squares, states[i]);
+      answer =
+        materials[i].answer(dim * mean_stretch, 0.5 * alpha / volume * squares, states[i], thermal);
       double *const numbers = trial.numbers.begin() + n_numbers * i;
       numbers[stiffness]    = alpha * answer.ratio;
       numbers[tension]      = dim * answer.mean / q - numbers[stiffness] * mean_stretch;
@@ -293,9 +361,14 @@ namespace PeriDeal
         stored += families.nodes().volume(i) * trial.answers[i].stored;
         n_yield += trial.answers[i].yields() ? 1. : 0.;
       }
-    bool         yields = false;
-    const double dissipated =
-      accepted.take(u, trial.forces, stored, n_yield, families.nodes().communicator(), yields);
+    bool         yields     = false;
+    const double dissipated = accepted.take(u,
+                                            trial.forces,
+                                            stored,
+                                            n_yield,
+                                            accepted.warms ? plastic_work(u) : 0.,
+                                            families.nodes().communicator(),
+                                            yields);
     if (yields)
       remember();
     return dissipated;

@@ -7,6 +7,7 @@
 #include <perideal/operators/solid/elastic_operator.h>
 #include <perideal/operators/solid/solid_bonds.h>
 #include <perideal/operators/solid/solid_loads.h>
+#include <perideal/operators/solid/stretch_rates.h>
 #include <perideal/operators/solid/stretch_screen.h>
 
 #include <array>
@@ -109,6 +110,7 @@ namespace PeriDeal
     {
       return (criterion ? criterion->memory_consumption() : 0) +
              loaded_side.capacity() * sizeof(unsigned int) +
+             (rates ? rates->memory_consumption() : 0) +
              (screen ? screen->memory_consumption() : 0);
     }
 
@@ -139,5 +141,6 @@ namespace PeriDeal
     std::vector<unsigned int>           losing;   // bonds, in ascending order
     std::vector<unsigned int>           softened; // nodes with bonds that are, ascending
     std::unique_ptr<StretchScreen<dim>> screen;   // null: all bonds are looked at
+    std::unique_ptr<StretchRates<dim>>  rates;    // null: no limit depends on them
   };
 } // namespace PeriDeal

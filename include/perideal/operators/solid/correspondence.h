@@ -73,7 +73,6 @@ namespace PeriDeal
                    const BondEnds<dim>       &ends,
                    BondTable<dim>            &bonds,
                    const NodeLaws<dim>       &laws,
-                   const ThermalStrains      &thermal,
                    const BodyParameters<dim> &body);
     ~Correspondence() override;
 
@@ -84,6 +83,7 @@ namespace PeriDeal
 
     void   multiply(Vector &y, const Vector &x) const override;
     void   find_forces(Vector &y, const Vector &u, const double t) const override;
+    void   take_temperatures(const Vector &changes) override;
     double energy(const Vector &u) const override;
     double accept(const Vector &u, const double t) override;
     void   exchange(Archive &archive, const NodeKeys &keys) override;
@@ -136,13 +136,7 @@ namespace PeriDeal
     /** What is stored at u, whose forces, if there is a lattice, are -F; of this process. */
     double stored(const Vector &u, const Vector &minus_F) const;
 
-    /** What a node makes of displacements, whose ghosts and images are up to date. */
-    void find_at(const double      *u,
-                 const unsigned int i,
-                 const Span        &inside,
-                 const Span        &outside) const;
-
-    /** The same of those that store no bonds. */
+    /** What nodes that store no bonds make of u; its ghosts and images are up to date. */
     void find_on_lattice(const double *u) const;
 
     /** What a node makes of its gradient and of sums of W |z_e|^2 and of W z_e . du. */

@@ -35,6 +35,13 @@ namespace PeriDeal
     /** y = -F at u and time t, by thermal strains, too. Collective. */
     virtual void find_forces(Vector &y, const Vector &u, const double t) const = 0;
 
+    /**
+     * Temperatures have become those of nodes, ghosts up to date, or if this is empty those of the
+     * scene's formula: strains by them, and what of the law depends on them. Throws UserError: a
+     * yield stress that is none. Collective.
+     */
+    virtual void take_temperatures(const Vector &changes) = 0;
+
     /** What is stored. Collective. */
     virtual double energy(const Vector &u) const = 0;
 

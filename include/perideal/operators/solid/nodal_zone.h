@@ -6,7 +6,6 @@
 #include <perideal/operators/coupling/coupling.h>
 #include <perideal/operators/solid/correspondence.h>
 #include <perideal/operators/solid/node_laws.h>
-#include <perideal/operators/solid/thermal_strains.h>
 
 #include <vector>
 
@@ -69,12 +68,11 @@ namespace PeriDeal
     /** Owned nodes in whose family a node has a share. */
     static std::vector<bool> reaching(const Coupling<dim> &coupling);
 
-    NodeLaws<dim>        laws;
-    const ThermalStrains thermal; // none
-    const BondEnds<dim>  ends;
-    BondTable<dim>       rows;
-    Correspondence<dim>  nodal;
-    double               n_in_zone = 0.;
-    mutable Vector       found; // memory
+    NodeLaws<dim>       laws;
+    const BondEnds<dim> ends;
+    BondTable<dim>      rows;
+    Correspondence<dim> nodal;
+    double              n_in_zone = 0.;
+    mutable Vector      found; // memory
   };
 } // namespace PeriDeal

@@ -6,8 +6,8 @@
 #include <perideal/base/diverged.h>
 #include <perideal/laws/j2_plasticity.h>
 #include <perideal/mesh/nodes.h>
+#include <perideal/operators/solid/stress_laws.h>
 #include <perideal/operators/solid/stress_steps.h>
-#include <perideal/operators/solid/thermal_strains.h>
 
 #include <memory>
 #include <vector>
@@ -23,12 +23,13 @@ namespace PeriDeal
   {
   public:
     /**
-     * Nodes and strains have to outlive this object. Throws UserError: a yield stress that is not
-     * positive. Collective.
+     * Both have to outlive this object. Throws UserError: a yield stress that is not positive.
+     * Collective.
      */
-    NodeStresses(const Nodes<dim>          &nodes,
-                 const ThermalStrains      &thermal,
-                 const BodyParameters<dim> &body);
+    NodeStresses(const Nodes<dim> &nodes, const BodyParameters<dim> &body);
+
+    /** As FamilyForces::take_temperatures(). Collective. */
+    void take_temperatures(const Vector &changes);
 
     bool is_linear() const
     {
@@ -50,7 +51,7 @@ namespace PeriDeal
     /** The node flowed in an accepted step. */
     bool has_flowed(const unsigned int i) const
     {
-      return flows() && states[(i + 1) * law->n_state() - 1] > 0.;
+      return flows() && states[(i + 1) * law.law->n_state() - 1] > 0.;
     }
 
     /**
@@ -112,16 +113,24 @@ namespace PeriDeal
     std::size_t memory_consumption() const;
 
   private:
-    const Nodes<dim>                &nodes;
-    const ThermalStrains            &thermal;
-    std::unique_ptr<const StressLaw> law;
+    /** Parameters of the law at the temperatures of now. Collective. */
+    void find_parameters();
+
+    const Nodes<dim>          &nodes;
+    const BodyParameters<dim> &body;
+    PlacedStressLaw<dim>       law;
     struct
     {
       const J2Plasticity *j2        = nullptr; // if it is that
       bool                is_linear = false, is_full = false;
     } kind;
-    std::vector<double>                      parameters; // of nodes in a row that are alike
-    std::vector<std::uint32_t>               number_of;  // in these
+    std::vector<double>        parameters; // of nodes in a row that are alike
+    std::vector<std::uint32_t> number_of;  // in these
+    struct
+    {
+      std::vector<double> strains; // alpha dT; empty: the body is cold
+      std::vector<double> temperatures, accepted;
+    } warm;
     std::vector<double>                      states;
     mutable std::vector<double>              next;
     mutable std::vector<StressLaw::Response> responses;

@@ -85,6 +85,14 @@ namespace PeriDeal
     /** @param u of the cell, dim components of each node */
     Strain strain(const unsigned int q, const dealii::Vector<double> &u) const;
 
+    /** Dilatations at the points, or thirds of them, become what they are in strain(). */
+    void project(std::vector<double> &values) const
+    {
+      const std::vector<double> given = values;
+      if (projects)
+        projection.find(values, [&](const unsigned int q) { return given[q]; });
+    }
+
     /** The strain that a displacement of one in direction @p d of a node @p a makes. */
     Strain of_unknown(const unsigned int a, const unsigned int d, const unsigned int q) const;
 

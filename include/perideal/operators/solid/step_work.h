@@ -17,14 +17,17 @@ namespace PeriDeal
     /**
      * Go on from u, where the forces are minus @p now, to which this process has @p stored, and
      * where it has so many nodes that yield. Returns the work less what of it is stored; 0 where
-     * nothing yields, and of the first state, to which no step leads. Collective.
+     * nothing yields, and of the first state, to which no step leads. Where the temperature has
+     * changed (`warms`), which stores by itself, what the law says of the step counts. Collective.
      *
+     * @param by_law what the law says it has dissipated, of all processes
      * @param yields set to whether any node of any process does
      */
     double take(const Vector  &u,
                 const Vector  &now,
                 const double   stored_here,
                 const double   n_yield,
+                const double   by_law,
                 const MPI_Comm communicator,
                 bool          &yields)
     {
@@ -41,7 +44,9 @@ namespace PeriDeal
       sums[2]                 = n_yield;
       sums                    = dealii::Utilities::MPI::sum(sums, communicator);
       yields                  = sums[2] > 0.;
-      const double dissipated = yields && begun ? sums[0] - (sums[1] - stored) : 0.;
+      const double work       = begun ? sums[0] - (sums[1] - stored) : 0.;
+      const double dissipated = !yields ? 0. : warms ? by_law : work;
+      warms                   = false;
       stored                  = sums[1];
       begun                   = true;
       return dissipated;
@@ -57,6 +62,7 @@ namespace PeriDeal
     }
 
     bool   begun  = false;
+    bool   warms  = false; // temperatures have changed since the last step
     double stored = 0.;
     Vector displacement, forces; // to be given their layout
   };

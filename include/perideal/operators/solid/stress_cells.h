@@ -68,7 +68,7 @@ namespace PeriDeal
 
     const StressLaw &law() const
     {
-      return *of_points;
+      return *of_points.law;
     }
 
     /** Deformations are large. */
@@ -122,6 +122,15 @@ namespace PeriDeal
     /** Large deformations: the most of DeformedStrains::stiffening(); else 0. Collective. */
     double largest_stiffening(const Vector &u) const;
 
+    /**
+     * Temperatures have become those of the scene's formula and of nodes: what they strain the
+     * points by, and parameters that depend on them. The body does not give the strains of which it
+     * is asked after that. Throws UserError: a yield stress that is none. Collective.
+     *
+     * @param changes of nodes, ghosts up to date; empty: those of the formula
+     */
+    void take_temperatures(const BodyParameters<dim> &body, const Vector &changes);
+
     /** A state has been accepted. */
     bool has_begun() const
     {
@@ -134,11 +143,20 @@ namespace PeriDeal
     /** As StressSteps. Collective. */
     void throw_faults() const
     {
-      steps.throw_faults(*of_points, dofs.get_communicator());
+      steps.throw_faults(*of_points.law, dofs.get_communicator());
     }
 
     /** Collective. */
     void exchange(Archive &archive);
+
+    /** Of states and what goes with them. Not collective. */
+    std::size_t memory_consumption() const
+    {
+      return (all_parameters.capacity() + states.capacity() + warm.strains.capacity() +
+              warm.temperatures.capacity() + warm.accepted.capacity()) *
+               sizeof(double) +
+             first.capacity() * sizeof(first[0]);
+    }
 
   private:
     /** Number of the first point of an own cell. */
@@ -159,13 +177,20 @@ namespace PeriDeal
     /** Large deformations: whether the point that is looked at is as one may be; else keeps it. */
     bool holds(const unsigned int q) const;
 
-    const dealii::DoFHandler<dim>         &dofs;
-    const std::unique_ptr<const StressLaw> of_points;
-    const CutCells<dim>                   &cracks;
-    std::vector<std::size_t>               first; // by active cell index
-    const Share                            share;
-    std::vector<double>                    all_parameters, states;
-    bool                                   begun = false;
+    const dealii::DoFHandler<dim> &dofs;
+    const PlacedStressLaw<dim>     of_points;
+    const CutCells<dim>           &cracks;
+    std::vector<std::size_t>       first; // by active cell index
+    const Share                    share;
+    std::vector<double>            all_parameters, states;
+    bool                           begun = false;
+
+    /** Of the points, by nodal temperatures; empty: the body is cold. */
+    struct
+    {
+      std::vector<double> strains; // alpha dT, as dilatations are projected
+      std::vector<double> temperatures, accepted;
+    } warm;
 
     StressSteps  steps;
     mutable Trip inverted; // the point that is turned inside out most

@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace PeriDeal
@@ -18,10 +19,20 @@ namespace PeriDeal
   template <int dim>
   struct PlacedStressLaw
   {
-    using Parameters = std::function<std::vector<double>(const dealii::Point<dim> &)>;
+    /** At a place and its temperature. Not finite: none (yield_stress_fault()). */
+    using Parameters = std::function<std::vector<double>(const dealii::Point<dim> &, const double)>;
 
     std::unique_ptr<const StressLaw> law; // null: none
     Parameters                       parameters;
+    bool                             depends_on_temperature = false; // the parameters do
+
+    /** The temperature before any has been computed; empty: 0. */
+    std::function<double(const dealii::Point<dim> &)> start = {};
+
+    std::vector<double> parameters_at_start(const dealii::Point<dim> &p) const
+    {
+      return parameters(p, start ? start(p) : 0.);
+    }
   };
 
 
@@ -32,6 +43,15 @@ namespace PeriDeal
    */
   template <int dim>
   PlacedStressLaw<dim> stress_law_of(const BodyParameters<dim> &body);
+
+  /**
+   * What is wrong with the yield stress and hardening modulus of a place at a temperature; empty:
+   * nothing, or the body does not yield.
+   */
+  template <int dim>
+  std::string yield_stress_fault(const Material           &material,
+                                 const dealii::Point<dim> &p,
+                                 const double              temperature);
 
   /** The linear law as one of stresses, likewise. */
   template <int dim>

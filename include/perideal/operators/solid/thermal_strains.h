@@ -25,6 +25,22 @@ namespace PeriDeal
   }
 
 
+  /** T in formulas of a solid, where the temperature has changed by this (section `Elasticity`). */
+  template <int dim>
+  double temperature_of(const BodyParameters<dim> &body, const double change)
+  {
+    return body.elasticity.reference_temperature + change;
+  }
+
+
+  /** The same before any temperature has been computed. */
+  template <int dim>
+  double temperature_at_start(const BodyParameters<dim> &body, const dealii::Point<dim> &p)
+  {
+    return temperature_of(body, body.elasticity.temperature_change.value(p));
+  }
+
+
   /** The thermal strains of nodes, owned and ghosts; those of bonds are the means of both ends. */
   class ThermalStrains
   {

@@ -49,6 +49,8 @@ namespace PeriDeal
 
     void find_forces(Vector &y, const Vector &u, const double = 0.) const override;
 
+    void take_temperatures(const Vector &changes) override;
+
     /** By hardening, too. Collective. */
     double energy(const Vector &u) const override;
 
@@ -98,6 +100,9 @@ namespace PeriDeal
     std::size_t memory_consumption() const override;
 
   private:
+    /** Of the owned nodes at these temperatures; empty: at those of the start. Collective. */
+    void find_materials(const std::vector<double> &temperatures);
+
     /** Numbers of each bond, in the order of rows. */
     struct OfBonds
     {
@@ -134,8 +139,10 @@ namespace PeriDeal
     const BondEnds<dim>                   &ends;
     BondTable<dim>                        &bonds;
     const NodeLaws<dim>                   &laws;
-    std::vector<OrdinaryPlasticity>        materials; // of owned nodes, or a single one
-    std::vector<OrdinaryPlasticity::State> states;    // of owned nodes
+    const BodyParameters<dim>             &of_scene;
+    std::vector<double>                    expansions; // alpha dT of all nodes; empty: it is cold
+    std::vector<OrdinaryPlasticity>        materials;  // of owned nodes, or a single one
+    std::vector<OrdinaryPlasticity::State> states;     // of owned nodes
 
     struct
     {
