@@ -210,10 +210,10 @@ namespace PeriDeal
     if (scene.warms_slowly())      // `Time step` is that of the heat problem
       {
         const bool of_both = scene.elasticity.absolute_reference.has_value();
-        if (of_both && scene.time.time_step > 0.)
+        const bool of_law  = scene.material.law.kind != SolidLaw::linear;
+        if ((of_both || of_law) && scene.time.time_step > 0.)
           return scene.time.time_step;
-        const bool in_steps = of_both || scene.material.breaks() ||
-                              scene.material.law.kind != SolidLaw::linear ||
+        const bool in_steps = of_both || of_law || scene.material.breaks() ||
                               scene.elasticity.has_full_kinematics() || !scene.cracks.tips.empty();
         return (in_steps ? share : 1.) * scene.time.end_time;
       }

@@ -382,9 +382,6 @@ namespace PeriDeal
         scene.elasticity.solver_name() + "'. Leave the entry out.");
     refuse_rates(runs(scene, ModelKind::coupled),
                  "is for 'Models = peridynamics', not 'coupled'. Leave one of them out.");
-    refuse_rates(
-      !scene.boundary_conditions.symmetry.empty(),
-      "knows nothing of what is beyond the body ('Symmetry' in section 'Boundary conditions'). Compute the whole body, or leave the entry out.");
     scene.elasticity.refuse(
       scene.elasticity.controls_loads() && material.law.kind != SolidLaw::linear &&
         !material.law.softens(),

@@ -9,7 +9,7 @@ Bounds that follow from no theory are about 1.5 times the gap that was measured;
 
 import math
 
-from scene_test import PD, Comparison, check, run_parts, run_scene, scene_text
+from scene_test import FE, PD, Comparison, check, run_parts, run_scene, scene_text
 from scene_texts import grid_mesh
 
 PLATE = "prm/elasticity/yielding_plate.prm"
@@ -118,7 +118,7 @@ Initial and source/Source = if(t < 1, 300, -300)
 Time/End time = 2
 Time/Time step = 0.02
 Output/Write every = 0.2
-Output/Line = 0.5,0.5 ; 1.5,0.5 ; 3
+Output/Probes = 1,0.5
 Output/Fields = none
 Solver/Tolerance = 1e-12
 """)

@@ -232,7 +232,6 @@ Material/Rate factor=1 + rate & Material/Critical stretch=1 & Elasticity/Solver=
 Material/Rate factor=1 + rate & Material/Critical stretch=1 => Material/Rate factor | bodies in motion | 'linear'
 Material/Rate factor=2 + rate & Material/Critical stretch=1 & Elasticity/Solver=dynamics => Material/Rate factor | is 2 at a rate of 0
 Material/Rate factor=1 + t & Material/Critical stretch=1 & Elasticity/Solver=dynamics => Material/Rate factor | 't' | rate
-Material/Rate factor=1 + rate & Material/Critical stretch=1 & Elasticity/Solver=dynamics & Boundary conditions/Symmetry=left => Material/Rate factor | 'Symmetry'
 Material/Rate factor=1 + rate & Material/Law=softening & Material/Tensile strength=1 & Material/Fracture energy=1 & Elasticity/Solver=dynamics => Material/Rate factor | 'Law = softening'
 Material/Law=softening & Material/Tensile strength=1 & Material/Fracture energy=1 & Material/Criterion=energy => Material/Criterion | soften by their stretch
 Material/Law=softening & Material/Tensile strength=1 & Material/Fracture energy=1 + t => Material/Fracture energy | depends on t or T

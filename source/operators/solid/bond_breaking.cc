@@ -56,6 +56,7 @@ namespace PeriDeal
       watch_limits();
     if (const auto &factor = body.material.law.breaking.rate_factor)
       rates = std::make_unique<StretchRates<dim>>(bonds.families.nodes(),
+                                                  bonds.ends,
                                                   *factor,
                                                   bonds.kinematics.is_full());
     loaded_side = loads.sides_nearby(bonds.families);
@@ -130,7 +131,7 @@ namespace PeriDeal
       kinematics.extension_moment(u, i, bond),
       kinematics.is_full() ? kinematics.length(bond) * xi.norm() : bond.moment * xi);
     if (rates && found.exceeds())
-      found.limit *= rates->factor(i, bond.neighbor, xi);
+      found.limit *= rates->factor(i, bond.neighbor);
     return found;
   }
 

@@ -5,7 +5,7 @@
 
 #include <perideal/base/archive.h>
 #include <perideal/base/types.h>
-#include <perideal/mesh/nodes.h>
+#include <perideal/operators/solid/bond_ends.h>
 #include <perideal/scene/expression.h>
 
 namespace PeriDeal
@@ -23,37 +23,48 @@ namespace PeriDeal
   class StretchRates
   {
   public:
-    /** All have to outlive this object. @param is_full strains are those of the deformed bonds */
-    StretchRates(const Nodes<dim> &nodes, const Expression &factor, const bool is_full);
+    /**
+     * All have to outlive this object.
+     * @param nodes of the bonds @param is_full strains are those of the deformed bonds
+     */
+    StretchRates(const Nodes<dim>    &nodes,
+                 const BondEnds<dim> &ends,
+                 const Expression    &factor,
+                 const bool           is_full);
 
     /** Bonds are looked at in the state u, at time t. Collective. */
     void take(const Vector &u, const double t);
 
     /**
-     * f of the bond xi between an owned node i and j, a node known here; to the last bit the same
-     * from both ends. What is less than 1 is a fault of the formula. Not collective.
+     * f of the bond between an owned node i and j, a node known here or a fictitious one; to the
+     * last bit the same from both ends. What is less than 1 is a fault of the formula. Not
+     * collective.
      */
-    double factor(const unsigned int            i,
-                  const unsigned int            j,
-                  const dealii::Tensor<1, dim> &xi) const;
+    double factor(const unsigned int i, const unsigned int j) const;
 
     /** Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
 
     std::size_t memory_consumption() const
     {
-      return now.memory_consumption() + before.memory_consumption();
+      return 2 * (now.displacement.memory_consumption() + now.images.capacity() * sizeof(double));
     }
 
   private:
-    double stretch(const Vector                 &u,
-                   const unsigned int            i,
-                   const unsigned int            j,
-                   const dealii::Tensor<1, dim> &xi) const;
+    /** What bonds are looked at in. */
+    struct State
+    {
+      Vector              displacement; // ghosts up to date
+      std::vector<double> images;       // of fictitious nodes
+      double              time = 0.;
+    };
 
-    const Expression &of_rate;
-    const bool        is_full;
-    Vector            now, before; // displacements, ghosts up to date
-    double            time = 0., time_before = 0.;
+    double stretch(const State &state, const unsigned int i, const unsigned int j) const;
+    void   find_images(State &state) const;
+
+    const BondEnds<dim> &ends;
+    const Expression    &of_rate;
+    const bool           is_full;
+    State                now, before;
   };
 } // namespace PeriDeal
