@@ -7,7 +7,7 @@
     python3 doc/make_figures.py --work-precision
 
 Runs each scene (all below prm/ but those of prm/failures and those as published, if none is named), draws its report, and keeps of it
-doc/figures/NAME.png: the last temperature (displacement, stress), scaled to a thumbnail. For prm/quick_start.prm the
+doc/figures/NAME.png: the last plastic strain or temperature (displacement, stress), scaled to a thumbnail. For prm/quick_start.prm the
 figure is kept in full width too, as doc/figures/quick_start_wide.png. A picture that is newer
 than its scene is left as it is, unless --all is given. The tables name every scene below prm/ (six of them in the README) with
 its title and the first sentence of its comment, up to a colon or bracket; --table writes the tables only.
@@ -99,9 +99,9 @@ def save(image, name, width=None, height=None):
 
 
 def picture(figures, scene):
-    """The last figure of the temperature, of bodies that break the damage; of an elastic body the deformed shape, of those of papers the stress; of a bar its line."""
+    """The last figure of plastic strain or the temperature, of bodies that break the damage; of an elastic body the deformed shape, of those of papers the stress; of a bar its line."""
     elastic = {"le_2014": "von_mises", "fracture": "damage"}.get(scene.parent.name, "displacement_magnitude")
-    found = (elastic != "damage" and sorted(figures.glob("temperature*.png"))) or sorted(figures.glob(f"{elastic}*.png")) \
+    found = (elastic != "damage" and (sorted(figures.glob("plastic_strain*.png")) or sorted(figures.glob("temperature*.png")))) or sorted(figures.glob(f"{elastic}*.png")) \
         or sorted(figures.glob("displacement_magnitude*.png")) or [figures / "line.png"]
     image = cropped(Image.open(found[-1]))
     solid = re.search(r"^\s*set\s+Dimension\s*=\s*3", scene.read_text(encoding="utf-8"), re.MULTILINE)
