@@ -47,6 +47,7 @@ RUBBER = {"Domain/Cells": "24, 6", "Elasticity/Solver": "dynamics", "Material/De
           "Time/End time": "1", "Output/Write at": "0.5"}
 NODAL = {"Elasticity/Model": "correspondence", "Peridynamics/Horizon ratio": "2", "Peridynamics/Kernel exponent": "auto"}
 BLENDED = {**NODAL, "Models": "coupled", "Domain/Nodes": "vertices", "Coupling/Scheme": "blending", "Coupling/Zone": "1.15 - sqrt(x^2 + y^2)", "Coupling/Overlap": "1"}
+STRETCHED = {"Domain/Cells": "4, 2, 2", "Elasticity/Kinematics": "full", "Solver/Tolerance": "1e-13", "Boundary conditions/Displacement": "right: 0.1*t, free, free", "Time/End time": "4"}
 SCENES = {
     "heat": [("heat/convection.prm", {**HEAT, "Time/Stepper": stepper}, tolerance)
              for stepper, tolerance in (("euler", 0), ("rk4", 0), ("rkc2", 0), ("chebyshev", 0), ("crank nicolson", IMPLICIT),
@@ -64,7 +65,7 @@ SCENES = {
                ("elasticity/user_bonds.prm", YIELDING_BONDS, 0),
                ("fracture/colliding_bars.prm", {}, 0), ("fracture/branching_crack.prm", {"Time/End time": "2.5e-5", "Models": "coupled", "Domain/Cells": "60, 25", "Domain/Nodes": "vertices", "Coupling/Zone": "follow"}, IMPLICIT),
                ("elasticity/impact_on_strip.prm", {}, 0), ("papers/le_2014/cooling.prm", IMAGE, 0)],
-    "loading": [("elasticity/yielding_ring.prm", {"Domain/Refinements": "2", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/hyperelastic_block.prm", {"Domain/Cells": "24, 6", "Solver/Tolerance": "1e-13", "Output/Write at": "1"}, IMPLICIT), ("elasticity/user_law.prm", NOTCHED, IMPLICIT), ("elasticity/user_law.prm", {**NOTCHED, **NODAL, "Models": "peridynamics"}, IMPLICIT), ("elasticity/creeping_plate.prm", {"Domain/Cells": "16, 8", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/yielding_plate.prm", {"Domain/Cells": "16, 16", "Solver/Tolerance": "1e-12"}, IMPLICIT),
+    "loading": [("elasticity/yielding_ring.prm", {"Domain/Refinements": "2", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/hyperelastic_block.prm", {"Domain/Cells": "24, 6", "Solver/Tolerance": "1e-13", "Output/Write at": "1"}, IMPLICIT), ("elasticity/user_law.prm", NOTCHED, IMPLICIT), ("elasticity/user_law.prm", {**NOTCHED, **NODAL, "Models": "peridynamics"}, IMPLICIT), ("elasticity/user_law.prm", STRETCHED, IMPLICIT), ("elasticity/user_law.prm", {**STRETCHED, **NODAL, "Models": "peridynamics"}, IMPLICIT), ("elasticity/creeping_plate.prm", {"Domain/Cells": "16, 8", "Time/Time step": "0.5", "Solver/Tolerance": "1e-13"}, IMPLICIT), ("elasticity/yielding_plate.prm", {"Domain/Cells": "16, 16", "Solver/Tolerance": "1e-12"}, IMPLICIT),
                 ("elasticity/yielding_plate.prm", {"Domain/Cells": "12, 12", "Time/Time step": "0.1", "Solver/Tolerance": "1e-12", **NODAL}, IMPLICIT),
                 ("elasticity/yielding_plate.prm", {"Domain/Cells": "12, 12", "Time/Time step": "0.1", "Time/End time": "1", "Output/Write at": "0.5", "Solver/Tolerance": "1e-12", **BLENDED}, IMPLICIT), ("fracture/following_zone.prm", {"Domain/Cells": "17, 25", "Solver/Tolerance": "1e-13"}, IMPLICIT),
                 ("fracture/softening_zone.prm", {"Domain/Lower corner": "-0.0925, 0", "Domain/Upper corner": "0.0925, 0.05", "Domain/Cells": "37, 10", "Solver/Tolerance": "1e-13", "Time/End time": "0.6",
