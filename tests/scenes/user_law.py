@@ -458,13 +458,14 @@ def large():
     for model, dimension, settings in ((FE, 2, {}), (FE, 3, {"Domain/Cells": "4, 2, 2", "Time/Time step": "0.25"}), (PD, 2, nodal), (PD, 3, {**nodal, "Domain/Cells": "8, 4, 4", "Time/Time step": "0.5"})):
         plane = {"Elasticity/Plane": "strain"} if dimension == 2 else {}
         zero = ", 0" if dimension == 3 else ""
-        bent = {"Boundary conditions/Displacement": f"left: 0, 0{zero} ; right: free, 0.8*t{', free' if dimension == 3 else ''}"}
-        for what, load in (("stretch 1.5", hyperelastic.pulled(dimension, 1.5)), ("shear 1.5", hyperelastic.sides(dimension, f"1.5*t*y, 0{zero}")), ("bent", bent)):
-            if dimension == 3 and model == PD and what != "stretch 1.5":
+        bent = {"Boundary conditions/Displacement": "left: 0, 0 ; right: free, 0.8*t"}
+        for what, load, columns in (("stretch 1.5", hyperelastic.pulled(dimension, 1.5), ("ux", "uy", "sxx", "von_mises")), ("shear 1.5", hyperelastic.sides(dimension, f"1.5*t*y, 0{zero}"), ("ux", "sxx", "sxy", "von_mises")),
+                                    ("bent", bent, ("ux", "uy", "sxx", "sxy", "von_mises"))):
+            if dimension == 3 and what == "bent" or (dimension, model, what) == (3, PD, "shear 1.5"):
                 continue
             every = {**plane, **load, **settings}
             found, expected = hyperelastic.block(dimension, {**every, **law}), hyperelastic.block(dimension, every)
-            compare(table, f"{model}, {dimension}D, {what}", found, expected, 1e-10, model=model)
+            compare(table, f"{model}, {dimension}D, {what}", found, expected, 1e-10, columns, model)
             table.add(f"{model}, {dimension}D, {what}, strain energy", found.total("strain energy", model), expected.total("strain energy", model), relative=1e-10)
             if what == "bent":
                 for n in (2, 4):
@@ -521,7 +522,7 @@ def unsymmetric():
         row = run_scene(patch, {**law, **times, **settings}).rows(model)[0]
         for column, value in zip(("sxx", "syy", "sxy"), (expected[0], expected[1], expected[3])):
             table.add(f"{model}, {column}", row[column], value, absolute=1e-10)
-        console = {**law, **times, **settings, "Boundary conditions/Traction": "right: -0.2*t, -0.1*t", "Time/End time": "1"}
+        console = {**law, **times, **settings, "Boundary conditions/Traction": "right: -0.2*t, -0.2*t", "Time/End time": "1"}
         once = run_scene(scene_of(CONSOLE, 2, solver="newton"), {**console, "Output/Write at": "1"})
         check(once.total("energy dissipated by the law", model) > 0, f"{model}: the console flows")
         for n in (2, 4):
