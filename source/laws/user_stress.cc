@@ -419,7 +419,8 @@ namespace PeriDeal
     const auto lost = [&](const double *const state) {
       const double of_law = is_full ? state[lost_at] :
                                       state[energies_at + 1] + state[energies_at + 2];
-      return of_law == 0. && state[energies_at] != 0. ? state[work_at] - given(state) : of_law;
+      const bool is_rest = of_law == 0. && state[energies_at] != 0. && !is_full;
+      return is_rest ? state[work_at] - given(state) : of_law;
     };
     const bool gives_stored = next[energies_at] != 0. || before[energies_at] != 0.;
     response.stored         = gives_stored ? given(next) : next[work_at] - lost(next);

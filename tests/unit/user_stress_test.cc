@@ -300,6 +300,7 @@ namespace
           }
         point.go(F);
       }
+    EXPECT_EQ(point.dissipated, 0.);
   }
 
 

@@ -23,7 +23,8 @@ namespace PeriDeal
    *
    * Stored and dissipated are what the library gives, SSE and SPD + SCD, per volume that is
    * deformed. Where it gives one of them the other is the rest of the work (of the mean of the
-   * stresses before and after each step), and where it gives none all work is stored. Where strain
+   * stresses before and after each step), and where it gives none all work is stored. Under large
+   * deformations, where that mean is less exact, SSE alone leaves nothing dissipated. Where strain
    * and time rest the accepted state stays, and the library is asked for its tangent alone.
    *
    * A tangent that is its own transpose but for 1e-6 of its largest entry, as differences leave it,

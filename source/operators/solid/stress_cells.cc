@@ -125,6 +125,7 @@ namespace PeriDeal
           {
             point.response = StressLaw::Response();
             point.tangent  = 0.;
+            std::copy_n(trial.state, point.state.size(), point.state.begin());
             continue;
           }
         trial.strain = at.deformed ? at.deformed->strain(q) : at.strains.strain(q, at.u);
