@@ -595,7 +595,7 @@ namespace PeriDeal
         rounded_text(largest) +
         " (in radians). 'Kinematics = linear' in section 'Elasticity' is for small angles, and lets what turns so far grow by " +
         rounded_text(100. * (std::sqrt(1. + largest * largest) - 1.)) +
-        " %. 'Kinematics = full', for peridynamics, and in finite elements with 'Law = hyperelastic' (section 'Material'), turns it as it is.");
+        " %. 'Kinematics = full', for peridynamics, and in finite elements with 'Law = hyperelastic' and 'user' (section 'Material'), turns it as it is.");
     }
     /** Cracks that have come to the end of their zone. */
     template <int dim>

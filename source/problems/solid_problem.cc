@@ -664,7 +664,7 @@ namespace PeriDeal
   template <int dim>
   Trip SolidProblem<dim>::watch_totals(const double t) const
   {
-    if (stepper || !op().symmetric())
+    if (stepper || (!op().symmetric() && op().stepping.symmetric_law))
       return {};
     return balance_broken("the forces on the body at rest do not balance: their sum is " +
                             rounded_text(force_lost),

@@ -21,7 +21,7 @@ namespace PeriDeal
     declare(plane, "Plane", "stress", {"stress", "strain"}) =
       "Two dimensions only: no stress, or no strain, out of the plane.";
     declare(kinematics, "Kinematics", "linear", {"linear", "full"}) =
-      "Strains of small displacements, or of the deformed body with whatever rotations (`full`): in peridynamics with `Model = state-based` or `bond-based`, in finite elements and `correspondence` with `Law = hyperelastic` (section `Material`), in finite elements with `Law = linear`, too. Loads are forces per area and volume of the undeformed body.";
+      "Strains of small displacements, or of the deformed body with whatever rotations (`full`): in peridynamics with `Model = state-based` or `bond-based`, in finite elements and `correspondence` with `Law = hyperelastic` and `user` (section `Material`), in finite elements with `Law = linear`, too. Loads are forces per area and volume of the undeformed body.";
     declare("Temperature change", EntryType::formula, "0", "temperature") =
       "Temperature above that of the unstrained body, a number or a formula of x, y, z; it strains the body by "
       "`Thermal expansion` in section `Material` times this. Or `computed`: each model first solves the heat problem that the scene describes, too "

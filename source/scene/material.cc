@@ -98,7 +98,7 @@ namespace PeriDeal
          EntryType::text,
          "",
          "",
-         "With `Law = user`: a shared library, or its source in Fortran or C, which is compiled by gfortran or cc (FC, CC); its path, or that beside the scene. For finite elements and `Model = correspondence` it has a `umat_` (Abaqus' arguments, small strains), with the moduli, too. For `state-based` and `bond-based` bonds it has a `perideal_bond_law`, by the header perideal_bond_law.h, and moduli are those of the scene."},
+         "With `Law = user`: a shared library, or its source in Fortran or C, which is compiled by gfortran or cc (FC, CC); its path, or that beside the scene. For finite elements and `Model = correspondence` it has a `umat_` (Abaqus' arguments; strains are small, or those of `Kinematics = full`), with the moduli, too. For `state-based` and `bond-based` bonds it has a `perideal_bond_law`, by the header perideal_bond_law.h, and moduli are those of the scene."},
         {"User properties",
          EntryType::list,
          "",

@@ -131,7 +131,12 @@ namespace PeriDeal
         (!by_elements || coupled) && !body.elasticity.is_correspondence(),
         "a law of stresses, which is for 'Models = finite elements', and for 'peridynamics' and 'coupled' with 'Model = correspondence' (section 'Elasticity'), or of bonds, for 'Models = peridynamics' alone. Use these.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3.");
-      refuse_large_changes(body, refuse);
+      body.elasticity.refuse(
+        body.elasticity.has_full_kinematics() && dim == 2 &&
+          body.elasticity.plane == PlaneState::stress,
+        "Kinematics",
+        "found 'full' with 'Law = user' (section 'Material'), which has large deformations in three dimensions and in plane strain. Use 'Plane = strain', or 'linear' here.");
+      refuse_cracks(body, refuse);
       refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
              "which knows no 'Temperature change' (section 'Elasticity').");
       body.elasticity.refuse(
@@ -245,8 +250,9 @@ namespace PeriDeal
         "found 'fictitious nodes', but families of 'Model = correspondence' (section 'Elasticity') end at the surface beside elements. Use 'auto' or 'none'.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3. Use 'state-based'.");
       refuse(
-        body.elasticity.has_full_kinematics() && kind != SolidLaw::hyperelastic,
-        "which is for small displacements, but with 'Law = hyperelastic' (section 'Material'). Use that one or 'Kinematics = linear', or 'state-based'.");
+        body.elasticity.has_full_kinematics() && kind != SolidLaw::hyperelastic &&
+          kind != SolidLaw::user,
+        "which is for small displacements, but with 'Law = hyperelastic' and 'user' (section 'Material'). Use one of these or 'Kinematics = linear', or 'state-based'.");
       refuse(kind == SolidLaw::viscoelastic || kind == SolidLaw::softening ||
                kind == SolidLaw::formula || kind == SolidLaw::user_bonds,
              "whose nodes have a law of stresses; 'Law = " + body.material.text("Law") +
@@ -285,7 +291,7 @@ namespace PeriDeal
       kind == SolidLaw::viscoelastic && by_elements && !coupled &&
         body.elasticity.has_full_kinematics(),
       "Kinematics",
-      "'full' is for finite elements with 'Law = hyperelastic' and 'linear' (section 'Material'). Use 'linear'.");
+      "'full' is for finite elements with 'Law = hyperelastic', 'user' and 'linear' (section 'Material'). Use 'linear'.");
     material.refuse(
       kind == SolidLaw::formula && by_elements && !coupled,
       "Law",

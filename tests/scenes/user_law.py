@@ -6,12 +6,17 @@
     user_law.py plastic     prm/elasticity/user_law.f90 against `plastic` and a closed form, its tangent against differences
     user_law.py swelling    stress at no strain: a body that nothing else loads, one that is brought back
     user_law.py nodes       at nodes of correspondence peridynamics: against the built-in laws, on 2 processes, broken (resumed: resume.py)
+    user_law.py large       large deformations: a neo-Hookean law against `hyperelastic`, a hypoelastic one that turns with the body, in elements and at nodes
+    user_law.py unsymmetric a flow that is not associated: stresses against an integration of its own, on several processes
     user_law.py ranks       2 and 4 processes
     user_law.py mistakes    broken libraries: one message each, on 2 processes, too (entries: tests/unit/scene_mistakes_test.cc)
 """
 
+import math
 import os
 import subprocess
+
+import hyperelastic
 
 from scene_test import FE, PD, SOURCE_DIR, Comparison, check, check_close, check_less, check_one_message, run_parts, run_perideal, run_scene, scene_text, temporary_folder, write_file
 
@@ -432,6 +437,99 @@ def nodes():
     table.show()
 
 
+def turned_and_stretched():
+    """u of a body that turns by 90 degrees while it is stretched along its own axes: formulas, and Cauchy's stress of sigma = C : ln V, sxx, syy, sxy."""
+    a, b, turn = math.log(1.5), math.log(0.8), math.pi / 2
+    x, y = f"exp({a}*t)*x", f"exp({b}*t)*y"
+    along, across = f"cos({turn}*t)", f"sin({turn}*t)"
+    G, bulk = 1000 / 2.6, 1000 / 3 / 0.4
+    pressure = (bulk - 2 * G / 3) * (a + b)
+    return (f"{along}*{x} - {across}*{y} - x", f"{across}*{x} + {along}*{y} - y"), (pressure + 2 * G * b, pressure + 2 * G * a, 0)
+
+
+def large():
+    """Kinematics = full."""
+    folder = temporary_folder()
+    neo_hooke = os.path.join(SOURCE_DIR, "tests", "umats", "neo_hooke.c")
+    moduli = {"Material/Young modulus": "", "Material/Poisson ratio": ""}
+    law = {**moduli, **user(neo_hooke, "5, 1.0714285714285714")}  # those of the block
+    table = Comparison("a neo-Hookean UMAT and 'hyperelastic'")
+    nodal = {**hyperelastic.NODAL, "Domain/Cells": "8, 4", "Time/Time step": "0.25"}
+    for model, dimension, settings in ((FE, 2, {}), (FE, 3, {"Domain/Cells": "4, 2, 2", "Time/Time step": "0.25"}), (PD, 2, nodal), (PD, 3, {**nodal, "Domain/Cells": "8, 4, 4", "Time/Time step": "0.5"})):
+        plane = {"Elasticity/Plane": "strain"} if dimension == 2 else {}
+        zero = ", 0" if dimension == 3 else ""
+        bent = {"Boundary conditions/Displacement": "left: 0, 0 ; right: free, 0.8*t"}
+        for what, load, columns in (("stretch 1.5", hyperelastic.pulled(dimension, 1.5), ("ux", "uy", "sxx", "von_mises")), ("shear 1.5", hyperelastic.sides(dimension, f"1.5*t*y, 0{zero}"), ("ux", "sxx", "sxy", "von_mises")),
+                                    ("bent", bent, ("ux", "uy", "sxx", "sxy", "von_mises"))):
+            if dimension == 3 and what == "bent" or (dimension, model, what) == (3, PD, "shear 1.5"):
+                continue
+            every = {**plane, **load, **settings}
+            found, expected = hyperelastic.block(dimension, {**every, **law}), hyperelastic.block(dimension, every)
+            compare(table, f"{model}, {dimension}D, {what}", found, expected, 1e-10, columns, model)
+            table.add(f"{model}, {dimension}D, {what}, strain energy", found.total("strain energy", model), expected.total("strain energy", model), relative=1e-10)
+            if what == "bent":
+                for n in (2, 4):
+                    compare(table, f"{model}, {dimension}D, {n} processes", hyperelastic.block(dimension, {**every, **law}, ranks=n), found, 1e-11, model=model)
+    table.show()
+    fortran = user(write_file("elastic.for", ELASTIC, folder))
+    table = Comparison("a hypoelastic UMAT that is turned by 90 degrees and stretched: sigma = C : ln V")
+    formulas, (sxx, syy, sxy) = turned_and_stretched()
+    for model, settings in ((FE, {"Domain/Cells": "2, 1"}), (PD, {**nodal, "Domain/Cells": "6, 3"})):
+        for steps in (10, 40):
+            row = hyperelastic.block(2, {"Elasticity/Plane": "strain", **moduli, **fortran, **settings, **hyperelastic.sides(2, ", ".join(formulas)), "Time/Time step": str(1 / steps)}).rows(model)[0]
+            for column, value in (("sxx", sxx), ("syy", syy), ("sxy", sxy)):
+                table.add(f"{model}, {steps} steps, {column}", row[column] / abs(syy), value / abs(syy), absolute=1e-10)
+    table.show()
+
+
+def drucker_prager(steps, properties):
+    """Stresses 11, 22, 33, 12 of a path of strains in plane strain: Python's own integration, the size of each return by bisection."""
+    E, nu, c, H, a, b = properties
+    G, K = E / 2 / (1 + nu), E / 3 / (1 - 2 * nu)
+    stress, kappa = [0.0] * 4, 0.0
+    for step in steps:
+        change = sum(step[:3])
+        p = sum(stress[:3]) / 3 + K * change
+        s = [stress[k] - sum(stress[:3]) / 3 + 2 * G * (step[k] - change / 3) for k in range(3)] + [stress[3] + G * step[3]]
+        q = math.sqrt(1.5 * (sum(x * x for x in s[:3]) + 2 * s[3] ** 2))
+
+        def above(grown):
+            return q - 3 * G * grown + a * (p - K * b * grown) - c - H * (kappa + grown)
+
+        low, high = 0.0, q / (3 * G)
+        for _ in range(100):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if above(middle) > 0 else (low, middle)
+        grown = low
+        stress = [(1 - 3 * G * grown / q) * x + (p - K * b * grown if k < 3 else 0) for k, x in enumerate(s)]
+        kappa += grown
+    return stress, kappa
+
+
+def unsymmetric():
+    """Drucker and Prager's law with a dilation that is not its friction."""
+    properties = (1000, 0.3, 1, 50, 0.4, 0.1)
+    law = user(os.path.join(SOURCE_DIR, "tests", "umats", "drucker_prager.c"), ", ".join(map(str, properties)), 1)
+    table = Comparison("a flow that is not associated")
+    # Sheared after it has been pressed together, without and with a strain that is uniform.
+    nodal = {"Models": "peridynamics", "Elasticity/Model": "correspondence", "Peridynamics/Horizon ratio": "2", "Domain/Cells": "8, 4"}
+    path = "-0.002*min(t, 1)*x + 0.004*max(t - 1, 0)*y, -0.001*min(t, 1)*y + 0.001*max(t - 1, 0)*x"
+    patch = scene_of(PATCH, 2, sides=" ; ".join(f"{side}: {path}" for side in ("left", "right", "bottom", "top")))
+    times = {"Elasticity/Plane": "strain", "Time/End time": "2", "Time/Time step": "0.25", "Output/Write at": "2"}
+    expected, kappa = drucker_prager([(-0.0005, -0.00025, 0, 0)] * 4 + [(0, 0, 0, 0.00125)] * 4, properties)
+    check(kappa > 1e-3, f"it flows: {kappa}")
+    for model, settings in ((FE, {}), (PD, nodal)):
+        row = run_scene(patch, {**law, **times, **settings}).rows(model)[0]
+        for column, value in zip(("sxx", "syy", "sxy"), (expected[0], expected[1], expected[3])):
+            table.add(f"{model}, {column}", row[column], value, absolute=1e-10)
+        console = {**law, **times, **settings, "Boundary conditions/Traction": "right: -0.2*t, -0.2*t", "Time/End time": "1"}
+        once = run_scene(scene_of(CONSOLE, 2, solver="newton"), {**console, "Output/Write at": "1"})
+        check(once.total("energy dissipated by the law", model) > 0, f"{model}: the console flows")
+        for n in (2, 4):
+            compare(table, f"{model}, console, {n} processes", run_scene(scene_of(CONSOLE, 2, solver="newton"), {**console, "Output/Write at": "1"}, ranks=n), once, 1e-9, model=model)
+    table.show()
+
+
 def ranks():
     table = Comparison("a notched bar on several processes")
     once = run_scene(BAR, NOTCHED)
@@ -461,7 +559,6 @@ BROKEN = {
     "no states": (broken("statev[0] = 1;"), 0, ["writes more states than 'User states'", "which is 0"]),
     "rows": (broken("stress[4] = stress[5] = 0;"), 0, ["behind the end of STRESS or DDSDDE", "NTENS = 4", "NDI = 3, NSHR = 1"]),
     "columns": (broken("ddsdde[16] = 1;"), 0, ["behind the end of STRESS or DDSDDE"]),
-    "unsymmetric": (broken("if (coords[0] > 1.8) ddsdde[1] *= 1.01;"), 0, ["not symmetric", "'Solver = dynamics'"]),
     "short steps": (broken("if (dstran[0] != 0) *pnewdt = 0.25;"), 0, ["0.25 times this one (PNEWDT)", "'Time step'"]),
     "no tangent": (broken("for (int k = 0; k < n * n; ++k) ddsdde[k] = 0;"), 0, ["leaves the tangent (DDSDDE) zero"]),
     "xit": (broken(FAR + "xit_();"), 0, ["has ended the run (XIT)"]),
@@ -508,4 +605,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(elastic, plastic, swelling, nodes, ranks, mistakes)
+    run_parts(elastic, plastic, swelling, nodes, large, unsymmetric, ranks, mistakes)

@@ -278,7 +278,8 @@ Models=coupled & Coupling/Zone=everywhere => 'Law' | 'user' | 'Models = finite e
 Elasticity/Solver=linear => 'Solver' | 'Law = user' | 'newton'
 Material/Fracture energy=1 => 'Law' | 'user' | 'Fracture energy'
 Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'user' | 'Temperature change'
-Elasticity/Kinematics=full => 'Law' | 'user' | 'Kinematics = linear'
+Elasticity/Kinematics=full => 'Kinematics' | 'Law = user' | 'Plane = strain'
+Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Elasticity/Model=correspondence & Elasticity/Kinematics=full & Elasticity/Plane=strain => 'Kinematics' | 'Models = coupled'
 Elasticity/Plane=strain & Cracks/Segments=0.2,0.5 ; 0.4,0.5 => 'Contact' | 'Law = user' | 'false'
 )");
   }

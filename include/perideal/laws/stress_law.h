@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
 
 #include <perideal/scene/choices.h>
 
@@ -54,6 +55,8 @@ namespace PeriDeal
       double stored     = 0.; // energy now
       double dissipated = 0.; // since the state that was accepted
       double stretch    = 1.; // out of a plane of stress, of large deformations
+
+      bool has_symmetric_tangent = true; // the one that was asked for
     };
 
     /** What a law is asked about: a strain that is reached straight from the accepted one. */
@@ -68,6 +71,8 @@ namespace PeriDeal
       double        length      = 0.;               // of the element around the point
       double        temperature = 0., warming = 0.; // at its end, since the accepted one
       unsigned int  element = 0, point = 0;
+
+      dealii::Tensor<2, 3> displacement_gradient = {}; // F - 1, of large deformations
     };
 
     virtual ~StressLaw() = default;

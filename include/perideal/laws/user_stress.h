@@ -13,19 +13,25 @@
 namespace PeriDeal
 {
   /**
-   * A law of a shared library, with Abaqus' interface of a UMAT for small strains. Parameters: the
-   * three coordinates of a point, and the number of its material in the list of them. State:
-   * strain, stress, energies (elastic, plastic, by creep), work, then STATEV.
+   * A law of a shared library, with Abaqus' interface of a UMAT. Parameters: the three coordinates
+   * of a point, and the number of its material in the list of them. State: strain, stress, energies
+   * (elastic, plastic, by creep), work, of large deformations F - 1 and what is lost, then STATEV.
    *
-   * Stored and dissipated are what the library gives, SSE and SPD + SCD. Where it gives one of
-   * them the other is the rest of the work (of the mean of the stresses before and after each
-   * step), and where it gives none all work is stored. Where strain and time rest the accepted
-   * state stays, and the library is asked for its tangent alone.
+   * Large deformations: of F F_0^-1 = V R (FiniteStep) R is DROT and ln V is DSTRAN; stress and
+   * strain of the state are Cauchy's and the sum of these, turned by R before each call. DDSDDE is
+   * that of Jaumann's rate of J sigma, over J (second_tangent()). The answer to StressLaw is S.
+   *
+   * Stored and dissipated are what the library gives, SSE and SPD + SCD, per volume that is
+   * deformed. Where it gives one of them the other is the rest of the work (of the mean of the
+   * stresses before and after each step), and where it gives none all work is stored. Under large
+   * deformations, where that mean is less exact, SSE alone leaves nothing dissipated. Where strain
+   * and time rest the accepted state stays, and the library is asked for its tangent alone.
+   *
+   * A tangent that is its own transpose but for 1e-6 of its largest entry, as differences leave it,
+   * is made that; another one is taken as it is.
    *
    * Throws UserError, with the place, the strain and the increment, for what is no number, what was
-   * written behind STRESS, STATEV or DDSDDE, a tangent that is not its own transpose (by more than
-   * 1e-6 of its largest entry; less, as differences leave, is halved between both), PNEWDT < 1, and
-   * XIT.
+   * written behind STRESS, STATEV or DDSDDE, PNEWDT < 1, and XIT.
    */
   class UserStress : public StressLaw
   {
@@ -42,11 +48,15 @@ namespace PeriDeal
       std::vector<OfMaterial> materials;
     };
 
-    /** @param dim of the body; in two dimensions @p kind tells plane strain from plane stress */
+    /**
+     * @param dim of the body; in two dimensions @p kind tells plane strain from plane stress
+     * @param is_full deformations are large: not in plane stress
+     */
     UserStress(const std::shared_ptr<const UserLibrary> &library,
                const unsigned int                        dim,
                const StressState                         kind,
-               const Numbers                            &numbers);
+               const Numbers                            &numbers,
+               const bool                                is_full = false);
 
     unsigned int n_parameters() const override
     {
@@ -55,7 +65,7 @@ namespace PeriDeal
 
     unsigned int n_state() const override
     {
-      return first_of_user + numbers.n_states;
+      return first_of_user() + numbers.n_states;
     }
 
     bool may_fail() const override
@@ -69,9 +79,13 @@ namespace PeriDeal
     std::vector<std::pair<std::string, unsigned int>> shown() const override;
 
   private:
-    static constexpr unsigned int first_of_user = 6 + 6 + 3 + 1;
-
     struct Call;
+
+    /** Of the state. */
+    unsigned int first_of_user() const
+    {
+      return 6 + 6 + 3 + 1 + (is_full ? 9 + 1 : 0);
+    }
 
     const OfMaterial &material_of(const Trial &trial) const
     {
@@ -81,6 +95,15 @@ namespace PeriDeal
     /** What is wrong with what a call has left, or nothing. */
     std::string fault_of(const Call &call, const bool with_tangent) const;
 
+    /** Put what a call has left into the state. */
+    void keep(const Call &call, const Trial &trial, double *next) const;
+
+    /** Stored, and dissipated in the step. */
+    void find_energies(Response &response, const Trial &trial, const double *next) const;
+
+    /** DDSDDE. @param symmetric the mean with its transpose */
+    Tangent tangent_of(const Call &call, const bool symmetric) const;
+
     [[noreturn]] void throw_fault(const std::string &fault,
                                   const Call        &call,
                                   const Trial       &trial) const;
@@ -88,5 +111,6 @@ namespace PeriDeal
     const std::shared_ptr<const UserLibrary> library;
     const unsigned int                       n_normal, n_shear;
     const Numbers                            numbers;
+    const bool                               is_full;
   };
 } // namespace PeriDeal

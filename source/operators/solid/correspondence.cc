@@ -476,10 +476,11 @@ namespace PeriDeal
   template <int dim>
   double Correspondence<dim>::accept(const Vector &u, const double t)
   {
-    if (stresses.is_full()) // which remembers and dissipates nothing
-      stresses.accept(t, false, false);
-    if (is_linear() || stresses.is_full())
-      return 0.;
+    if (!stresses.remembers()) // nor dissipates
+      {
+        stresses.accept(t, false, false);
+        return 0.;
+      }
     if (!knows(u) || !trial.has_forces || stresses.now() != t)
       {
         Vector y(trial.forces);
@@ -489,15 +490,15 @@ namespace PeriDeal
     for (unsigned int i = 0; i < shapes.size(); ++i)
       n_flow += !stresses.flows() || trial.ratios[i] < 1. ? 1. : 0.;
     bool         flows      = false;
-    const double dissipated = accepted.take(u,
-                                            trial.forces,
-                                            stored(u, trial.forces),
-                                            n_flow,
-                                            accepted.warms ? plastic_work(u) : 0.,
-                                            families.nodes().communicator(),
-                                            flows);
-    const bool   changes    = !stresses.same_states();
-    stresses.accept(t, flows, changes);
+    const double by_forces  = accepted.take(u,
+                                           trial.forces,
+                                           stored(u, trial.forces),
+                                           n_flow,
+                                           accepted.warms ? plastic_work(u) : 0.,
+                                           families.nodes().communicator(),
+                                           flows);
+    const double dissipated = stresses.is_full() ? plastic_work(u) : by_forces; // of large steps
+    stresses.accept(t, flows, !stresses.same_states());
     if (flows && stresses.flows())
       remember(u);
     trial.known = trial.known && !flows;

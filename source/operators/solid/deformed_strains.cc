@@ -125,6 +125,15 @@ namespace PeriDeal
 
 
   template <int dim>
+  Tensor<2, 3> DeformedStrains<dim>::displacement_gradient(const unsigned int q) const
+  {
+    const double half_log = 0.5 * points[q].log_size;
+    return std::exp(half_log) * in_space(points[q].gradient) +
+           std::expm1(half_log) * Tensor<2, 3>(unit_symmetric_tensor<3>());
+  }
+
+
+  template <int dim>
   SymmetricTensor<2, 3> DeformedStrains<dim>::of_unknown(const unsigned int a,
                                                          const unsigned int d,
                                                          const unsigned int q) const

@@ -65,6 +65,15 @@ namespace PeriDeal
     }
 
 
+    /** Of the tangents of cells, and of families. Collective. */
+    template <int dim>
+    bool has_symmetric_law(const ElasticCells<dim> &cells, const NodalZone<dim> *const families)
+    {
+      return (!cells.stresses || cells.stresses->has_symmetric_tangents()) &&
+             (families == nullptr || families->have_symmetric_tangents());
+    }
+
+
     /** Laws that know it. Collective. */
     template <int dim>
     void tell_damage(const ZoneBreaking<dim> &breaking, NodalLaw &law)
@@ -263,6 +272,7 @@ namespace PeriDeal
   void ElasticElements<dim>::find_diagonal()
   {
     cells.throw_faults();
+    this->stepping.symmetric_law = has_symmetric_law(cells, nodal(zone_bonds));
     stiffness.for_each_entry([&](const unsigned int i, const auto column, const double value) {
       if (column == unknowns->local_to_global(i))
         stiffness_diagonal.local_element(i) = value;
@@ -562,6 +572,7 @@ namespace PeriDeal
     stiffness.compress();
     if (nodal(zone_bonds))
       nodal(zone_bonds)->linearize(u);
+    this->stepping.symmetric_law = has_symmetric_law(cells, nodal(zone_bonds));
   }
 
 

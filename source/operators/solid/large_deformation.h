@@ -25,6 +25,17 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  dealii::Tensor<2, 3> in_space(const dealii::Tensor<2, dim> &part)
+  {
+    dealii::Tensor<2, 3> full;
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = 0; b < dim; ++b)
+        full[a][b] = part[a][b];
+    return full;
+  }
+
+
   /** What is in the body. */
   template <int dim>
   dealii::SymmetricTensor<2, dim> in_body(const StressLaw::Tensor &full)
@@ -58,11 +69,8 @@ namespace PeriDeal
   StressLaw::Tensor cauchy_stress(const dealii::Tensor<2, dim> &gradient,
                                   const StressLaw::Response    &response)
   {
-    dealii::Tensor<2, 3> F;
-    F[0][0] = F[1][1] = F[2][2] = 1.;
-    for (unsigned int a = 0; a < dim; ++a)
-      for (unsigned int b = 0; b < dim; ++b)
-        F[a][b] += gradient[a][b];
+    const dealii::Tensor<2, 3> F =
+      in_space(gradient) + dealii::Tensor<2, 3>(dealii::unit_symmetric_tensor<3>());
     return symmetrize(F * dealii::Tensor<2, 3>(response.stress) * transpose(F)) /
            (determinant(F) * response.stretch);
   }

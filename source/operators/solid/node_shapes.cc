@@ -16,7 +16,7 @@ namespace PeriDeal
 
   namespace
   {
-    /** The largest eigenvalue of a stiffness as a map of strains. */
+    /** The largest eigenvalue of a stiffness, of its symmetric part, as a map of strains. */
     template <int dim>
     double largest_modulus(const SymmetricTensor<4, dim> &C)
     {
@@ -27,8 +27,8 @@ namespace PeriDeal
           {
             const auto a = SymmetricTensor<2, dim>::unrolled_to_component_indices(k),
                        b = SymmetricTensor<2, dim>::unrolled_to_component_indices(l);
-            matrix(k, l) = (k < dim ? 1. : std::sqrt(2.)) * (l < dim ? 1. : std::sqrt(2.)) *
-                           C[a[0]][a[1]][b[0]][b[1]];
+            matrix(k, l) = (k < dim ? 1. : std::sqrt(2.)) * (l < dim ? 1. : std::sqrt(2.)) * 0.5 *
+                           (C[a[0]][a[1]][b[0]][b[1]] + C[b[0]][b[1]][a[0]][a[1]]);
           }
       return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>>(matrix,
                                                                         Eigen::EigenvaluesOnly)

@@ -116,8 +116,10 @@ namespace PeriDeal
       responses[i] = kind.j2->update_with(flow, at, to, wanted);
     else
       {
-        at.length    = std::pow(nodes.volume(i), 1. / dim);
-        at.element   = nodes.partitioner()->local_to_global(i);
+        at.length  = std::pow(nodes.volume(i), 1. / dim);
+        at.element = nodes.partitioner()->local_to_global(i);
+        if (kind.is_full)
+          at.displacement_gradient = in_space(slopes);
         responses[i] = steps.update(*law.law, at, to, wanted);
       }
     if (tangent != nullptr)
@@ -162,6 +164,16 @@ namespace PeriDeal
     steps.throw_faults(*law.law, nodes.communicator());
     if (kind.is_full)
       throw_lowest_if_any(nodes.communicator(), worst);
+  }
+
+
+  template <int dim>
+  bool NodeStresses<dim>::have_symmetric_tangents() const
+  {
+    const bool all = std::all_of(responses.begin(), responses.end(), [](const auto &response) {
+      return response.has_symmetric_tangent;
+    });
+    return Utilities::MPI::min(all ? 1 : 0, nodes.communicator()) > 0;
   }
 
 

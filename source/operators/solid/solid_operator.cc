@@ -82,7 +82,9 @@ namespace PeriDeal
     , contact(std::make_unique<SolidContact>())
   {
     constexpr unsigned int soon = 5; // steps within which soft bodies may deform much
-    if (body.material.law.kind == SolidLaw::hyperelastic)
+    const SolidLaw         kind = body.material.law.kind;
+    if (kind == SolidLaw::hyperelastic ||
+        (kind == SolidLaw::user && body.elasticity.has_full_kinematics()))
       this->stepping.between_looks = soon;
     if (of_nodes)
       set_layout(of_nodes);

@@ -23,6 +23,18 @@ namespace PeriDeal
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** The laws of nodes. Collective. */
+    template <int dim>
+    bool have_symmetric_tangents(const SolidBonds<dim> &solid)
+    {
+      const auto *const nodal = solid.correspondence();
+      return nodal == nullptr || nodal->stresses.have_symmetric_tangents();
+    }
+  } // namespace
+
+
   template <int dim>
   StateOperator<dim>::StateOperator(Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : SolidOperator<dim>(body)
@@ -42,6 +54,7 @@ namespace PeriDeal
     find_thermal_strains();
     make_contact();
     breakage.tell_damage();
+    this->stepping.symmetric_law = have_symmetric_tangents(solid);
   }
 
 
@@ -212,6 +225,7 @@ namespace PeriDeal
     if (solid.flows())
       {
         solid.by_family->linearize(u);
+        this->stepping.symmetric_law = have_symmetric_tangents(solid);
         contact->linearize(u);
         return;
       }

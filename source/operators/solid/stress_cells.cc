@@ -126,6 +126,7 @@ namespace PeriDeal
           {
             point.response = StressLaw::Response();
             point.tangent  = 0.;
+            std::copy_n(trial.state, point.state.size(), point.state.begin());
             continue;
           }
         trial.strain = at.deformed ? at.deformed->strain(q) : at.strains.strain(q, at.u);
@@ -136,12 +137,22 @@ namespace PeriDeal
             trial.temperature = warm.temperatures[n];
             trial.warming     = warm.temperatures[n] - warm.accepted[n];
           }
+        if (at.deformed)
+          trial.displacement_gradient = at.deformed->displacement_gradient(q);
         point.response = steps.update(*of_points.law,
                                       trial,
                                       point.state.data(),
                                       with_tangents ? &point.tangent : nullptr,
                                       u == nullptr);
+        unsymmetric    = unsymmetric || !point.response.has_symmetric_tangent;
       }
+  }
+
+
+  template <int dim>
+  bool StressCells<dim>::has_symmetric_tangents() const
+  {
+    return Utilities::MPI::max(unsymmetric ? 1 : 0, dofs.get_communicator()) == 0;
   }
 
 
@@ -204,6 +215,7 @@ namespace PeriDeal
   {
     std::vector<types::global_dof_index> unknowns(at.u.size());
     FullMatrix<double>                   of_cell;
+    unsymmetric = false;
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {

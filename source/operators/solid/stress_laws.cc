@@ -70,7 +70,8 @@ namespace PeriDeal
                                                                 UserLibrary::Wanted::stresses),
                                            dim,
                                            stress_state_of(dim, body.elasticity.plane),
-                                           numbers),
+                                           numbers,
+                                           body.elasticity.has_full_kinematics()),
         [&material = body.material](const Point<dim> &p, const double) {
           std::vector<double> parameters(3, 0.);
           for (unsigned int d = 0; d < dim; ++d)

@@ -54,6 +54,9 @@ namespace PeriDeal
       return points[q].strain;
     }
 
+    /** F_bar - 1, with what is out of the plane. */
+    dealii::Tensor<2, 3> displacement_gradient(const unsigned int q) const;
+
     /** The derivative of the strain by the displacement in direction @p d of a node @p a. */
     Strain of_unknown(const unsigned int a, const unsigned int d, const unsigned int q) const;
 

@@ -68,7 +68,7 @@ namespace PeriDeal
     OperatorSize size() const override;
     bool         symmetric() const override
     {
-      return !zone_bonds || zone_bonds->coupling().symmetric();
+      return this->stepping.symmetric_law && (!zone_bonds || zone_bonds->coupling().symmetric());
     }
 
     bool zone_follows_cracks() const override

@@ -232,9 +232,9 @@ namespace PeriDeal
     {
       bool         follow        = false; // diagonal(), surrogate() need not know which bonds break
       unsigned int between_looks = 25;    // how many until one asks for largest_stretch() again
-      bool         scales_loads  = false; // LoadControl
       double       load_factor = 1.; // of loads and prescribed displacements, of no thermal strains
-    } stepping;                      // what steppers and load steps ask for
+      bool scales_loads = false, symmetric_law = true; // LoadControl; K, of forces that balance
+    } stepping;                                        // what steppers and load steps ask for
 
     /** Some strain energy may be released: bonds break, or cracks grow. Not collective. */
     bool may_release_energy() const
@@ -272,7 +272,7 @@ namespace PeriDeal
 
     bool symmetric() const override
     {
-      return true;
+      return stepping.symmetric_law;
     }
 
     void apply_capacity(Vector &y, const Vector &x) const override

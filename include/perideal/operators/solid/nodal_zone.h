@@ -40,6 +40,12 @@ namespace PeriDeal
 
     void linearize(const Vector &u);
 
+    /** As NodeStresses. Collective. */
+    bool have_symmetric_tangents() const
+    {
+      return nodal.stresses.have_symmetric_tangents();
+    }
+
     void exchange(Archive &archive, const NodeKeys &keys)
     {
       nodal.exchange(archive, keys);

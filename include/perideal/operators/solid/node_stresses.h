@@ -48,6 +48,12 @@ namespace PeriDeal
       return kind.j2 != nullptr;
     }
 
+    /** What a node goes through counts, or the law may fail. */
+    bool remembers() const
+    {
+      return law.law->n_state() > 0 || law.law->may_fail();
+    }
+
     /** The node flowed in an accepted step. */
     bool has_flowed(const unsigned int i) const
     {
@@ -57,7 +63,7 @@ namespace PeriDeal
     /**
      * Ask about a displacement gradient, in a step to time `now`.
      * @param flow its square is set, 0 of other laws
-     * @param tangent null: is not asked for
+     * @param tangent null: is not asked for; of large deformations dS/dE
      * Where large deformations turn the node inside out the answer is zero (throw_faults()).
      */
     void ask(const unsigned int               i,
@@ -87,6 +93,9 @@ namespace PeriDeal
      * farthest inside out. Collective.
      */
     void throw_faults() const;
+
+    /** The tangents that nodes have said last are symmetric, on all processes. Collective. */
+    bool have_symmetric_tangents() const;
 
     /** It has said nothing else than what was accepted last, on all processes. Collective. */
     bool same_states() const;

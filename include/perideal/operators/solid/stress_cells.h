@@ -101,6 +101,9 @@ namespace PeriDeal
                         dealii::FullMatrix<double> &matrix,
                         const Vector               *u = nullptr) const;
 
+    /** Of all tangents since the last add_tangent(), which forgets others. Collective. */
+    bool has_symmetric_tangents() const;
+
     /** Add the tangents of own cells at u. Collective. */
     void add_tangent(ElementMatrix<dim, dim> &matrix,
                      const HangingNodes<dim> &hanging,
@@ -193,7 +196,8 @@ namespace PeriDeal
     } warm;
 
     StressSteps  steps;
-    mutable Trip inverted; // the point that is turned inside out most
+    mutable Trip inverted;            // the point that is turned inside out most
+    mutable bool unsymmetric = false; // some tangent of an own cell
 
     /** The cell that is looked at. */
     struct Looked
