@@ -4,6 +4,7 @@
 #include "state_lattice.h"
 
 #include <perideal/base/instantiate.h>
+#include <perideal/scene/rules.h>
 
 namespace PeriDeal
 {
@@ -14,7 +15,8 @@ namespace PeriDeal
   {
     return body.elasticity.has_full_kinematics() ?
              "with 'Kinematics = full' each bond has its own direction" :
-           body.material.law.kind != SolidLaw::linear && !body.elasticity.is_correspondence() ?
+           body.material.law.kind != SolidLaw::linear && !body.elasticity.is_correspondence() &&
+               !relaxes_at_nodes(body) ?
              "with another 'Law' than 'linear' each bond answers by itself" :
            body.elasticity.is_static() && body.material.breaks() ?
              "bonds may break in a body at rest" :
@@ -251,6 +253,30 @@ namespace PeriDeal
       }
     if (!excess_runs.empty())
       add_excess(y, u);
+  }
+
+
+  template <int dim>
+  void StateLattice<dim>::forces_of_tensions(double *y, const double *tau) const
+  {
+    std::size_t s = 0;
+    for (std::size_t group = 0; group < stretches.groups.size(); ++group)
+      {
+        fill<1>(&tensions, group, tau);
+        for (unsigned int a = 0; a < dim; ++a)
+          stretches.apply(force_terms[a].data(), 1, group, sums[a].data());
+        for (; s < stretches.groups[group].stretches; ++s)
+          {
+            const Stretch &stretch = stretches.list[s];
+            finish(stretch, y);
+            for (std::uint32_t k = 0; stretch.edge != none && k < stretch.n; ++k)
+              for (unsigned int a = 0; a < dim; ++a)
+                y[static_cast<std::size_t>(dim) * (stretch.node + k) + a] =
+                  -families.nodes().volume(stretch.node + k) *
+                  (sums[a][stretch.at + k] +
+                   tau[stretch.node + k] * edges.moment(stretch.edge + k)[a]);
+          }
+      }
   }
 
 

@@ -45,6 +45,9 @@ namespace PeriDeal
      */
     void forces(double *y, const double *u, const double *tau) const;
 
+    /** -F of the computed nodes of tensions alone, as if nothing extended. */
+    void forces_of_tensions(double *y, const double *tau) const;
+
     /**
      * Whether s, c d/q^2, volumes and laws in the family are those of most nodes. For computed
      * nodes.
