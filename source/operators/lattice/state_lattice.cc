@@ -214,13 +214,16 @@ namespace PeriDeal
         const auto           &edge   = edges.list[stretch.edge + k];
         const Tensor<1, dim> &moment = edges.moment(stretch.edge + k);
         const std::size_t     node = stretch.node + k, at = stretch.at + k;
-        const double *const   own     = u + dim * node;
         const double          tension = tau != nullptr ? tau[node] : 0.;
         for (unsigned int a = 0; a < dim; ++a)
           {
-            double force = sums[a][at] + tension * moment[a] + edge.excess * own_sums[a][at];
-            for (unsigned int b = 0; b < dim; ++b)
-              force -= edge.block[complete.pair(a, b)] * own[b];
+            double force = sums[a][at] + tension * moment[a];
+            if (u != nullptr)
+              {
+                force += edge.excess * own_sums[a][at];
+                for (unsigned int b = 0; b < dim; ++b)
+                  force -= edge.block[complete.pair(a, b)] * u[dim * node + b];
+              }
             y[dim * node + a] = -families.nodes().volume(node) * force;
           }
       }
@@ -240,10 +243,10 @@ namespace PeriDeal
           fill<dim>(displacements.data(), group, u);
         for (unsigned int a = 0; a < dim; ++a)
           stretches.apply(force_terms[a].data() + (with_tau ? 0 : 1),
-                          dim + (with_tau ? 1 : 0),
+                          (u != nullptr ? dim : 0) + (with_tau ? 1 : 0),
                           group,
                           sums[a].data());
-        if (!excess_runs.empty())
+        if (u != nullptr && !excess_runs.empty())
           add_up_at_edges(group, own_sums);
         for (; s < stretches.groups[group].stretches; ++s)
           if (stretches.list[s].edge == none)
@@ -251,32 +254,8 @@ namespace PeriDeal
           else
             finish_edge(stretches.list[s], u, tau, y);
       }
-    if (!excess_runs.empty())
+    if (u != nullptr && !excess_runs.empty())
       add_excess(y, u);
-  }
-
-
-  template <int dim>
-  void StateLattice<dim>::forces_of_tensions(double *y, const double *tau) const
-  {
-    std::size_t s = 0;
-    for (std::size_t group = 0; group < stretches.groups.size(); ++group)
-      {
-        fill<1>(&tensions, group, tau);
-        for (unsigned int a = 0; a < dim; ++a)
-          stretches.apply(force_terms[a].data(), 1, group, sums[a].data());
-        for (; s < stretches.groups[group].stretches; ++s)
-          {
-            const Stretch &stretch = stretches.list[s];
-            finish(stretch, y);
-            for (std::uint32_t k = 0; stretch.edge != none && k < stretch.n; ++k)
-              for (unsigned int a = 0; a < dim; ++a)
-                y[static_cast<std::size_t>(dim) * (stretch.node + k) + a] =
-                  -families.nodes().volume(stretch.node + k) *
-                  (sums[a][stretch.at + k] +
-                   tau[stretch.node + k] * edges.moment(stretch.edge + k)[a]);
-          }
-      }
   }
 
 

@@ -40,13 +40,10 @@ namespace PeriDeal
 
     /**
      * -F of the computed nodes. Owned and ghost values; without tau (null) only what the extensions
-     * of bonds do. With tau the displacements u have to be those of dilatation_forces(), called
-     * just before.
+     * of bonds do; without u what tensions do. With both the displacements have to be those of
+     * dilatation_forces(), called just before.
      */
     void forces(double *y, const double *u, const double *tau) const;
-
-    /** -F of the computed nodes of tensions alone, as if nothing extended. */
-    void forces_of_tensions(double *y, const double *tau) const;
 
     /**
      * Whether s, c d/q^2, volumes and laws in the family are those of most nodes. For computed

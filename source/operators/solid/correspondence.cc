@@ -116,21 +116,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void Correspondence<dim>::find_at(const double      *u,
-                                    const unsigned int i,
-                                    const Span        &inside,
-                                    const Span        &outside) const
-  {
-    const Tensor<2, dim>  inverse(shapes[i].inverse);
-    const Tensor<2, dim> &slopes = trial.slopes[i] =
-      sum_of_changes(bonds, ends, u, i, inside, outside) * inverse;
-    ElasticSums sums;
-    add_elastic(sums, shapes, bonds, ends, u, i, slopes, stresses.flows(), inside, outside);
-    settle(i, sums.squares, sums.products);
-  }
-
-
-  template <int dim>
   void Correspondence<dim>::find_on_lattice(const double *u) const
   {
     const bool flows = stresses.flows();
@@ -200,8 +185,23 @@ namespace PeriDeal
     for_each_family(bonds,
                     shapes.size(),
                     [&](const unsigned int i, const Span &inside, const Span &outside) {
-                      if (!bonds.is_on_lattice(i) && shapes[i].share > 0.)
-                        find_at(values, i, inside, outside);
+                      if (bonds.is_on_lattice(i) || shapes[i].share == 0.)
+                        return;
+                      const Tensor<2, dim>  inverse(shapes[i].inverse);
+                      const Tensor<2, dim> &slopes = trial.slopes[i] =
+                        sum_of_changes(bonds, ends, values, i, inside, outside) * inverse;
+                      ElasticSums sums;
+                      add_elastic(sums,
+                                  shapes,
+                                  bonds,
+                                  ends,
+                                  values,
+                                  i,
+                                  slopes,
+                                  stresses.flows(),
+                                  inside,
+                                  outside);
+                      settle(i, sums.squares, sums.products);
                     });
     u.set_ghost_state(false);
     stresses.throw_faults();
@@ -354,18 +354,6 @@ namespace PeriDeal
           find(u);
       }
     return Utilities::MPI::sum(stored(u, trial.forces), families.nodes().communicator());
-  }
-
-
-  template <int dim>
-  double Correspondence<dim>::plastic_work(const Vector &u) const
-  {
-    if (!knows(u))
-      find(u);
-    double sum = 0.;
-    for (unsigned int i = 0; i < shapes.size(); ++i)
-      sum += shapes[i].share * families.nodes().volume(i) * stresses[i].dissipated;
-    return Utilities::MPI::sum(sum, families.nodes().communicator());
   }
 
 
@@ -682,24 +670,6 @@ namespace PeriDeal
     tangent.changes.update_ghost_values();
     sum_changes(of_bulk, x);
     counted = {};
-  }
-
-
-  template <int dim>
-  void Correspondence<dim>::pull_images(const Vector &u, const Vector &relaxed) const
-  {
-    const WithGhosts ghosts(u), ghosts_of_relaxed(relaxed);
-    counted = {0., 1.};
-    find_changes(u);
-    const Vector of_bulk(tangent.changes);
-    counted = {1., 0.};
-    find_changes(relaxed);
-    for (unsigned int k = 0; k < of_bulk.locally_owned_size(); ++k)
-      tangent.changes.local_element(k) += of_bulk.local_element(k);
-    tangent.changes.update_ghost_values();
-    counted = {};
-    Vector y(trial.forces);
-    sum_changes(y, relaxed);
   }
 
 

@@ -65,7 +65,7 @@ namespace PeriDeal
                                                           body);
     nodal         = families.get();
     if (relaxes_at_nodes(body))
-      by_family = std::make_unique<RelaxingFamilies<dim>>(shear_and_bulk(std::move(families)),
+      by_family = std::make_unique<RelaxingFamilies<dim>>(shear_and_bulk(std::move(families), ends),
                                                           body.material.law,
                                                           found);
     else

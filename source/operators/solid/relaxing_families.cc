@@ -21,8 +21,9 @@ namespace PeriDeal
     class NodalBody : public ShearAndBulk<dim>
     {
     public:
-      explicit NodalBody(std::unique_ptr<Correspondence<dim>> nodal)
+      NodalBody(std::unique_ptr<Correspondence<dim>> nodal, const BondEnds<dim> &ends)
         : nodal(std::move(nodal))
+        , ends(ends)
       {}
 
       void multiply(Vector &of_shear, Vector &of_bulk, const Vector &x) const override
@@ -32,7 +33,17 @@ namespace PeriDeal
 
       void pull_images(const Vector &u, const Vector &relaxed) const override
       {
-        nodal->pull_images(u, relaxed);
+        if (!ends.images)
+          return;
+        // K relaxed - K_b (relaxed - u), whose forces are the last ones.
+        Vector all(u.get_partitioner()), of_bulk(all), change(relaxed);
+        nodal->multiply(all, relaxed);
+        const std::vector<double> of_all = ends.images->sums_of_forces();
+        change -= u;
+        nodal->multiply_apart(all, of_bulk, change);
+        std::vector<double> &forces = ends.images->sums_of_forces();
+        for (std::size_t k = 0; k < forces.size(); ++k)
+          forces[k] = of_all[k] - forces[k];
       }
 
       double energy(const Vector &u) const override
@@ -62,6 +73,7 @@ namespace PeriDeal
 
     private:
       const std::unique_ptr<Correspondence<dim>> nodal;
+      const BondEnds<dim>                       &ends;
     };
 
 
@@ -173,9 +185,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  std::unique_ptr<ShearAndBulk<dim>> shear_and_bulk(std::unique_ptr<Correspondence<dim>> nodal)
+  std::unique_ptr<ShearAndBulk<dim>> shear_and_bulk(std::unique_ptr<Correspondence<dim>> nodal,
+                                                    const BondEnds<dim>                 &ends)
   {
-    return std::make_unique<NodalBody<dim>>(std::move(nodal));
+    return std::make_unique<NodalBody<dim>>(std::move(nodal), ends);
   }
 
 
@@ -295,7 +308,8 @@ namespace PeriDeal
 
 #define INSTANTIATE_APART(dim)                                                            \
   template std::unique_ptr<ShearAndBulk<dim>> shear_and_bulk<dim>(                        \
-    std::unique_ptr<Correspondence<dim>>);                                                \
+    std::unique_ptr<Correspondence<dim>>,                                                 \
+    const BondEnds<dim> &);                                                               \
   template std::unique_ptr<ShearAndBulk<dim>> shear_and_bulk<dim>(const BondEnds<dim> &,  \
                                                                   const BondTable<dim> &, \
                                                                   const NodeLaws<dim> &,  \

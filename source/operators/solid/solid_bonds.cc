@@ -122,7 +122,8 @@ namespace PeriDeal
       nodal = std::make_unique<Correspondence<dim>>(families, ends, rows, laws, thermal, body);
     if (relaxes_at_nodes(body))
       return std::make_unique<RelaxingFamilies<dim>>(
-        nodal ? shear_and_bulk(std::move(nodal)) : shear_and_bulk(ends, rows, laws, sums, forces),
+        nodal ? shear_and_bulk(std::move(nodal), ends) :
+                shear_and_bulk(ends, rows, laws, sums, forces),
         body.material.law,
         Vector(interleaved(*families.nodes().partitioner(), dim)));
     if (nodal)

@@ -207,7 +207,7 @@ namespace PeriDeal
   void SolidSums<dim>::find_forces_of_tensions(Vector &y, const double *tau) const
   {
     if (lattice)
-      lattice->forces_of_tensions(y.begin(), tau);
+      lattice->forces(y.begin(), nullptr, tau);
     for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
       {
         const unsigned int i = bonds.body.nodes[row];

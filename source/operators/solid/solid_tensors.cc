@@ -76,8 +76,8 @@ namespace PeriDeal
                 return;
               }
             const double product = bond.spring * bonds.forces.effective_moment(u.begin(), i, bond);
-            // V_i V_j t/x of this end, or with several phases the mean of both; of a fictitious node
-            // with that of which it is an image. What the spring has of this end:
+            // V_i V_j t/x of this end, or with several phases the mean of both; of a fictitious
+            // node with that of which it is an image. What the spring has of this end:
             const unsigned int   o   = ends.origin(j);
             const double         own = laws.stiffness(i), other = laws.stiffness(o);
             const double         this_end = ends.is_fictitious(j) ? 1. : own / (own + other);

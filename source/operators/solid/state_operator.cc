@@ -119,7 +119,7 @@ namespace PeriDeal
           }
         thermal_loads *= -1.;
         if (solid.ends.images)
-          solid.ends.images->keep_forces();
+          solid.ends.images->kept_forces = solid.ends.images->sums_of_forces();
       }
     this->keep_constant_loads();
   }

@@ -104,12 +104,6 @@ namespace PeriDeal
      */
     void multiply_apart(Vector &of_shear, Vector &of_bulk, const Vector &x) const;
 
-    /** Leave with fictitious nodes the forces of shear of the latter, of bulk at u. Collective. */
-    void pull_images(const Vector &u, const Vector &relaxed) const;
-
-    /** As YieldingFamilies::plastic_work(). Collective. */
-    double plastic_work(const Vector &u) const;
-
     /**
      * Stresses of the law and strains sym G of the owned nodes, with full kinematics Cauchy's
      * stresses and the strains of Green and Lagrange. Collective.
@@ -148,13 +142,7 @@ namespace PeriDeal
     /** What is stored at u, whose forces, if there is a lattice, are -F; of this process. */
     double stored(const Vector &u, const Vector &minus_F) const;
 
-    /** What a node makes of displacements, whose ghosts and images are up to date. */
-    void find_at(const double      *u,
-                 const unsigned int i,
-                 const Span        &inside,
-                 const Span        &outside) const;
-
-    /** The same of those that store no bonds. */
+    /** What nodes make of displacements that store no bonds; ghosts and images are up to date. */
     void find_on_lattice(const double *u) const;
 
     /** What a node makes of its gradient and of sums of W |z_e|^2 and of W z_e . du. */

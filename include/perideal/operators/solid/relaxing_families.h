@@ -46,9 +46,10 @@ namespace PeriDeal
   };
 
 
-  /** That of correspondence, which is linear. */
+  /** That of correspondence, which is linear. The ends of its bonds outlive it. */
   template <int dim>
-  std::unique_ptr<ShearAndBulk<dim>> shear_and_bulk(std::unique_ptr<Correspondence<dim>> nodal);
+  std::unique_ptr<ShearAndBulk<dim>> shear_and_bulk(std::unique_ptr<Correspondence<dim>> nodal,
+                                                    const BondEnds<dim>                 &ends);
 
   /** That of the linear peridynamic solid with linear kinematics. All outlive it. */
   template <int dim>
