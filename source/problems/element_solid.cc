@@ -13,6 +13,7 @@
 #include <perideal/base/user_error.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/laws/entropy_of_deformation.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/solid/elastic_elements.h>
 #include <perideal/scene/law_text.h>
 #include <perideal/scene/lists.h>
@@ -304,7 +305,7 @@ namespace PeriDeal
           elements = std::make_unique<ElasticElements<dim>>(handler, scene, std::move(coupling));
         }
         // Its fields would have to be mirrored, too.
-        const bool has_matrix = !scene.elasticity.is_correspondence() || !elements->nonlinear();
+        const bool has_matrix = !has_nodal_law(scene);
         if (model == ModelKind::coupled && scene.coupling.certificate && has_matrix &&
             elements->mirrors().empty())
           certify();

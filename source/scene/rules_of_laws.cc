@@ -240,21 +240,29 @@ namespace PeriDeal
                            "Scheme",
                            "'splice' is for 'Law = linear' (section 'Material'); use 'blending'.");
       refuse(
-        coupled && is_nonlinear && kind != SolidLaw::plastic && kind != SolidLaw::user,
-        "which 'Models = coupled' knows with 'Law' = linear, plastic and user (section 'Material'), found '" +
+        coupled && is_nonlinear && kind != SolidLaw::viscoelastic && kind != SolidLaw::plastic &&
+          kind != SolidLaw::user,
+        "which 'Models = coupled' knows with 'Law' = linear, viscoelastic, plastic and user (section 'Material'), found '" +
           body.material.text("Law") +
           "'. Use one of these, or 'Models = peridynamics' or 'finite elements'.");
       body.peridynamics.refuse(
         coupled && body.peridynamics.completes_families(),
         "Surface correction",
         "found 'fictitious nodes', but families of 'Model = correspondence' (section 'Elasticity') end at the surface beside elements. Use 'auto' or 'none'.");
+      body.material.refuse(
+        coupled && kind == SolidLaw::viscoelastic && body.material.breaks(),
+        "Law",
+        "found 'viscoelastic' with 'Model = correspondence' (section 'Elasticity'), whose bonds do not break in 'Models = coupled': use 'state-based', or leave 'Fracture energy' and 'Critical stretch' out.");
       refuse(dim == 1, "which is for 'Dimension' 2 and 3. Use 'state-based'.");
+      refuse(
+        kind == SolidLaw::viscoelastic && is_warm_body(body),
+        "whose viscoelastic bodies know no 'Temperature change'. Use 'state-based', with 'Dimension = 3'.");
       refuse(
         body.elasticity.has_full_kinematics() && kind != SolidLaw::hyperelastic &&
           kind != SolidLaw::user,
         "which is for small displacements, but with 'Law = hyperelastic' and 'user' (section 'Material'). Use one of these or 'Kinematics = linear', or 'state-based'.");
-      refuse(kind == SolidLaw::viscoelastic || kind == SolidLaw::softening ||
-               kind == SolidLaw::formula || kind == SolidLaw::user_bonds,
+      refuse(kind == SolidLaw::softening || kind == SolidLaw::formula ||
+               kind == SolidLaw::user_bonds,
              "whose nodes have a law of stresses; 'Law = " + body.material.text("Law") +
                "' (section 'Material') is one of bonds. Use 'state-based'.");
       refuse(
@@ -318,7 +326,7 @@ namespace PeriDeal
       kind == SolidLaw::viscoelastic && (dim == 1 || body.elasticity.is_bond_based()),
       "Law",
       "'viscoelastic' is a shear modulus that relaxes while the bulk modulus stays: it "
-      "is for 'Dimension' 2 and 3 with 'Model = state-based'.");
+      "is for 'Dimension' 2 and 3 with 'Model = state-based' and 'correspondence'.");
     material.refuse(
       kind == SolidLaw::viscoelastic && dim == 2 && body.elasticity.plane == PlaneState::stress,
       "Law",
@@ -335,5 +343,16 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  bool relaxes_at_nodes(const BodyParameters<dim> &body)
+  {
+    return body.material.law.kind == SolidLaw::viscoelastic &&
+           (body.elasticity.is_correspondence() ||
+            (!body.elasticity.has_full_kinematics() && !is_warm_body(body) &&
+             body.peridynamics.form != OperatorForm::stored));
+  }
+
+
   PERIDEAL_INSTANTIATE_FUNCTION(refuse_law);
+  PERIDEAL_INSTANTIATE_FUNCTION(relaxes_at_nodes);
 } // namespace PeriDeal

@@ -112,7 +112,7 @@ namespace PeriDeal
     op.distribute(u, t);
     op.multiply(image, u);
     residual -= image;
-    // What supports bear alone, as of a body that is held all around and warms up, leaves round-off.
+    // What supports bear alone leaves round-off: of a body that is held all around and warms up.
     constexpr double least  = 1e-3;
     const double     of_all = op.nonlinear() ? least * residual.l2_norm() : 0.;
     op.clear_constrained(residual);

@@ -24,6 +24,8 @@ namespace
   const Settings viscous{{"Material/Law", "viscoelastic"},
                          {"Material/Relaxation", "0.3, 1 ; 0.4, 10"}};
 
+  const Settings nodal{{"Elasticity/Model", "correspondence"}, {"Peridynamics/Horizon ratio", "2"}};
+
   /** The relaxation function, and its integral. */
   double relaxed(const double t)
   {
@@ -55,18 +57,24 @@ namespace
   template <int dim>
   std::vector<Kind> kinds()
   {
-    const Settings blended = Settings{{"Coupling/Zone", "x < 0.5"},
+    const Settings blended   = Settings{{"Coupling/Zone", "x < 0.5"},
                                       {"Coupling/Scheme", "blending"},
                                       {"Coupling/Overlap", "2"}};
+    const Settings completed = Settings{{"Peridynamics/Surface correction", "fictitious nodes"}};
     return {{"peridynamics", ModelKind::peridynamics, {}},
-            {"completed",
+            {"stored", ModelKind::peridynamics, {{"Peridynamics/Operator form", "stored"}}},
+            {"completed", ModelKind::peridynamics, completed},
+            {"correspondence", ModelKind::peridynamics, nodal},
+            {"correspondence, stored",
              ModelKind::peridynamics,
-             {{"Peridynamics/Surface correction", "fictitious nodes"}}},
+             nodal + Settings{{"Peridynamics/Operator form", "stored"}}},
+            {"correspondence, completed", ModelKind::peridynamics, nodal + completed},
             {"full",
              ModelKind::peridynamics,
              {{"Elasticity/Kinematics", "full"}, {"Elasticity/Solver", "conjugate gradients"}}},
             {"elements", ModelKind::finite_elements, {}},
             {"blending", ModelKind::coupled, blended},
+            {"correspondence, blending", ModelKind::coupled, blended + nodal},
             {"blending, breaking",
              ModelKind::coupled,
              blended + Settings{{"Material/Critical stretch", "10"}}}};
@@ -304,7 +312,7 @@ TEST(BondLaws, shear_modulus_relaxes)
   for (const Kind &kind : kinds<2>())
     relaxes<2>(kind);
   for (const Kind &kind : kinds<3>())
-    if (std::string(kind.name) != "completed")
+    if (std::string(kind.name).find("completed") == std::string::npos)
       relaxes<3>(kind);
 }
 
@@ -314,23 +322,144 @@ TEST(BondLaws, tangents_and_energies)
   const std::string curved = "s*(1 - 3*abs(s) + 5*s^2)";
   for (const Kind &kind : kinds<2>())
     {
-      SCOPED_TRACE(kind.name);
+      const std::string name = kind.name;
+      SCOPED_TRACE(name);
       // The energy of a law with a history is that of the instant.
       for (const double t : {0., 1.5})
         has_energy<2>(solid<2>() + viscous + kind.more, kind.model, t);
       if (kind.model == ModelKind::finite_elements)
         continue;
-      has_energy<2>(solid<2>() + kind.more + formula(curved), kind.model, 0.);
-      if (std::string(kind.name) != "completed") // whose bonds do not break
+      if (name.find("correspondence") == std::string::npos)
+        has_energy<2>(solid<2>() + kind.more + formula(curved), kind.model, 0.);
+      if (name.find("completed") == std::string::npos && // whose bonds do not break
+          name != "correspondence, blending")
         has_energy<2>(solid<2>() + viscous + kind.more, kind.model, 0., true);
     }
-  has_energy<2>(solid<2>() + kinds<2>()[4].more +
+  has_energy<2>(solid<2>() + kinds<2>()[8].more +
                   Settings{{"Coupling/Scheme", "exchange"},
                            {"Coupling/Zone", "everywhere"},
                            {"Coupling/Overlap", "0"}} +
                   formula(curved),
                 ModelKind::coupled,
                 0.);
+}
+
+
+namespace
+{
+  /**
+   * Histories at nodes are those of each bond, also where bonds break: forces, stresses, and
+   * energies of a body that is deformed now this way, now that.
+   */
+  template <int dim>
+  void remembers_as_bonds(const Settings &more, const bool breaks)
+  {
+    const Settings settings =
+      solid<dim>() + viscous + more +
+      (breaks ? Settings{{"Material/Critical stretch", "0.06"}, {"Elasticity/Contact", "false"}} :
+                Settings());
+    const auto body_of = [&](const char *form) {
+      return std::make_unique<Body<dim>>(settings + Settings{{"Peridynamics/Operator form", form}},
+                                         ModelKind::peridynamics);
+    };
+    const auto of_nodes = body_of("auto"), of_bonds = body_of("stored");
+    EXPECT_NE(of_nodes->states->bonds().relaxing(), nullptr);
+    EXPECT_EQ(of_bonds->states->bonds().relaxing(), nullptr);
+    const auto at = [&](const double t) {
+      return of_nodes->values([&](Point<dim> p) {
+        for (unsigned int d = 0; d < dim; ++d)
+          p[d] += 0.4 * t * (1. + d);
+        return Tensor<1, dim>(0.01 * bumpy_vector<dim>(p));
+      });
+    };
+    Vector found(at(0.)), wanted(found);
+    for (const double t : {0., 0.3, 1.1, 4., 4.1})
+      {
+        const Vector u = at(t);
+        of_nodes->op().unbalanced(found, u, t);
+        of_bonds->op().unbalanced(wanted, u, t);
+        EXPECT_LT(worst_difference(found, wanted), 1e-12 * wanted.linfty_norm()) << t;
+        const auto tensors = of_nodes->states->tensors(u), expected = of_bonds->states->tensors(u);
+        for (unsigned int i = 0; i < tensors.stress.size(); ++i)
+          {
+            EXPECT_LT((tensors.stress[i] - expected.stress[i]).norm(), 1e-12);
+            EXPECT_LT((tensors.strain[i] - expected.strain[i]).norm(), 1e-12);
+          }
+        of_nodes->op().accept(u, t);
+        of_bonds->op().accept(u, t);
+        if (breaks && t > 1.)
+          {
+            EXPECT_EQ(of_nodes->op().break_bonds(u, t), of_bonds->op().break_bonds(u, t));
+            EXPECT_NEAR(of_nodes->op().break_history()->released,
+                        of_bonds->op().break_history()->released,
+                        1e-12 * of_bonds->op().break_history()->released);
+          }
+        const double energy = of_bonds->op().energy(u);
+        EXPECT_NEAR(of_nodes->op().energy(u), energy, 1e-12 * energy);
+        EXPECT_NEAR(of_nodes->op().released().by_law,
+                    of_bonds->op().released().by_law,
+                    1e-12 * energy);
+      }
+    EXPECT_EQ(of_nodes->op().n_broken_bonds() > 0, breaks);
+  }
+
+
+  /** Stress of a uniform strain that jumps, then grows: that of the law, at all nodes. */
+  template <int dim>
+  void has_uniform_stress()
+  {
+    const Body<dim> body(solid<dim>() + nodal + viscous, ModelKind::peridynamics);
+    const Moduli    moduli = body.scene.material.moduli(Point<dim>());
+    const auto      strain = symmetrize(some_gradient<dim>());
+    double          t      = 0.;
+    for (const double dt : {0., 0.1, 3., 1e-9, 0.5, 20.})
+      {
+        t += dt;
+        const Vector u =
+          body.values([&](const Point<dim> &p) { return (1. + t) * linear_field<dim>(p); });
+        const double shear = moduli.shear * (relaxed(t) + integral(t)), bulk = moduli.bulk;
+        Vector       forces(u);
+        body.op().unbalanced(forces, u, t);
+        const auto now = body.states->tensors(u);
+        for (unsigned int i = 0; i < now.stress.size(); ++i)
+          {
+            const auto wanted = 2. * shear * strain + (bulk * (1. + t) - 2. / 3. * shear) *
+                                                        trace(strain) *
+                                                        dealii::unit_symmetric_tensor<dim>();
+            EXPECT_LT((now.stress[i] - wanted).norm(), 1e-12 * (1. + t)) << t;
+            if (dim == 2)
+              {
+                EXPECT_NEAR(now.out_of_plane[i],
+                            (bulk * (1. + t) - 2. / 3. * shear) * trace(strain),
+                            1e-12 * (1. + t));
+              }
+          }
+        body.op().accept(u, t);
+      }
+  }
+} // namespace
+
+
+TEST(BondLaws, nodes_remember_as_bonds)
+{
+  remembers_as_bonds<2>({}, false);
+  remembers_as_bonds<2>({}, true);
+  remembers_as_bonds<2>({{"Peridynamics/Surface correction", "fictitious nodes"}}, false);
+  remembers_as_bonds<2>({{"Peridynamics/Surface correction", "energy"}}, false);
+  remembers_as_bonds<2>({{"Material/Young modulus", "3 + y"},
+                         {"Boundary conditions/Symmetry", "bottom"},
+                         {"Peridynamics/Surface correction", "auto"},
+                         {"Cracks/Segments", "0.21,0.34 ; 0.66,0.43"},
+                         {"Elasticity/Contact", "false"}},
+                        false);
+  remembers_as_bonds<3>({}, true);
+}
+
+
+TEST(BondLaws, uniform_stress_of_correspondence)
+{
+  has_uniform_stress<2>();
+  has_uniform_stress<3>();
 }
 
 

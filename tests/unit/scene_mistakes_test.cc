@@ -224,7 +224,7 @@ Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Model=bond-b
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Time/Steady=true => 'Steady' | 'Law = viscoelastic'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Models=coupled & Coupling/Zone=everywhere => 'Scheme' | 'exchange' | 'blending'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Models=finite elements & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'Temperature change' | 'Models = peridynamics'
-Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Peridynamics/Operator form=lattice => 'Operator form' | 'Law' | 'auto'
+Material/Law=formula & Material/Bond force=s & Elasticity/Solver=newton & Peridynamics/Operator form=lattice => 'Operator form' | 'Law' | 'auto'
 Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'Temperature change' | plane strain
 Material/Yield stress=1 => 'Yield stress' | 'Law = plastic' | 'linear'
 Material/Hardening modulus=1 => 'Hardening modulus' | 'Law = plastic' | 'linear'
@@ -316,7 +316,7 @@ Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Material/
 Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=splice & Material/Law=plastic & Material/Yield stress=1 & Elasticity/Solver=newton => 'Scheme' | 'splice' | 'Law = linear' | 'blending'
 Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Peridynamics/Surface correction=fictitious nodes => 'Surface correction' | 'Model = correspondence' | 'auto'
 Elasticity/Kinematics=full & Elasticity/Solver=newton => 'Model' | small displacements | 'Law = hyperelastic' | 'Kinematics = linear'
-Material/Law=viscoelastic & Material/Relaxation=0.5, 1 => 'Model' | 'Law = viscoelastic' | 'state-based'
+Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Material/Law=viscoelastic & Material/Relaxation=0.5, 1 & Elasticity/Plane=strain & Material/Fracture energy=1 => 'Law' | 'viscoelastic' | do not break | 'state-based'
 Material/Law=formula & Material/Bond force=s & Elasticity/Solver=newton => 'Model' | 'Law = formula' | 'state-based'
 Peridynamics/Surface correction=moments => 'Surface correction' | 'moments' | 'correspondence' | 'none'
 Material/Law=hyperelastic & Elasticity/Kinematics=full & Elasticity/Solver=newton & Peridynamics/Operator form=lattice => 'Operator form' | 'Kinematics = full' | 'auto'

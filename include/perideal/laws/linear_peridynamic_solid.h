@@ -36,16 +36,21 @@ namespace PeriDeal
     }
 
     /**
-     * What of it the shear modulus multiplies while the bulk modulus stays, in 3D and plane strain,
+     * What of c the shear modulus multiplies while the bulk modulus stays, in 3D and plane strain,
      * where c = d (K - 5/3 G) and b = d (d + 2) G.
      */
+    inline double shear_factor(const StateLaw &law)
+    {
+      return -5. / (3. * (law.dilatation + 2.)) * law.extension;
+    }
+
+    /** The same of tau. */
     inline double shear_tension(const StateLaw &law,
                                 const double    q,
                                 const double    volume,
                                 const double    sum)
     {
-      return -5. / (3. * (law.dilatation + 2.)) * law.extension * law.dilatation * sum /
-             (q * q * volume);
+      return shear_factor(law) * law.dilatation * sum / (q * q * volume);
     }
 
     /** Of both ends of a bond. @param square W x^2 */

@@ -42,6 +42,14 @@ namespace PeriDeal
   template <int dim>
   void refuse_law(const BodyParameters<dim> &body, const bool by_elements, const bool coupled);
 
+  /**
+   * The viscoelastic law keeps what bodies of bonds went through at nodes: their forces are linear
+   * in displacements, which they are not with full kinematics or thermal strains; nor with
+   * `Operator form = stored`, where each bond of the ordinary solid has a history.
+   */
+  template <int dim>
+  bool relaxes_at_nodes(const BodyParameters<dim> &body);
+
   /** Of the models of diffusion that a scene names, one after the other. */
   template <int dim>
   void refuse_diffusion(const Scene<dim> &scene);

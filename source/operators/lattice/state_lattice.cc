@@ -4,6 +4,7 @@
 #include "state_lattice.h"
 
 #include <perideal/base/instantiate.h>
+#include <perideal/scene/rules.h>
 
 namespace PeriDeal
 {
@@ -14,7 +15,8 @@ namespace PeriDeal
   {
     return body.elasticity.has_full_kinematics() ?
              "with 'Kinematics = full' each bond has its own direction" :
-           body.material.law.kind != SolidLaw::linear && !body.elasticity.is_correspondence() ?
+           body.material.law.kind != SolidLaw::linear && !body.elasticity.is_correspondence() &&
+               !relaxes_at_nodes(body) ?
              "with another 'Law' than 'linear' each bond answers by itself" :
            body.elasticity.is_static() && body.material.breaks() ?
              "bonds may break in a body at rest" :
@@ -212,13 +214,16 @@ namespace PeriDeal
         const auto           &edge   = edges.list[stretch.edge + k];
         const Tensor<1, dim> &moment = edges.moment(stretch.edge + k);
         const std::size_t     node = stretch.node + k, at = stretch.at + k;
-        const double *const   own     = u + dim * node;
         const double          tension = tau != nullptr ? tau[node] : 0.;
         for (unsigned int a = 0; a < dim; ++a)
           {
-            double force = sums[a][at] + tension * moment[a] + edge.excess * own_sums[a][at];
-            for (unsigned int b = 0; b < dim; ++b)
-              force -= edge.block[complete.pair(a, b)] * own[b];
+            double force = sums[a][at] + tension * moment[a];
+            if (u != nullptr)
+              {
+                force += edge.excess * own_sums[a][at];
+                for (unsigned int b = 0; b < dim; ++b)
+                  force -= edge.block[complete.pair(a, b)] * u[dim * node + b];
+              }
             y[dim * node + a] = -families.nodes().volume(node) * force;
           }
       }
@@ -238,10 +243,10 @@ namespace PeriDeal
           fill<dim>(displacements.data(), group, u);
         for (unsigned int a = 0; a < dim; ++a)
           stretches.apply(force_terms[a].data() + (with_tau ? 0 : 1),
-                          dim + (with_tau ? 1 : 0),
+                          (u != nullptr ? dim : 0) + (with_tau ? 1 : 0),
                           group,
                           sums[a].data());
-        if (!excess_runs.empty())
+        if (u != nullptr && !excess_runs.empty())
           add_up_at_edges(group, own_sums);
         for (; s < stretches.groups[group].stretches; ++s)
           if (stretches.list[s].edge == none)
@@ -249,7 +254,7 @@ namespace PeriDeal
           else
             finish_edge(stretches.list[s], u, tau, y);
       }
-    if (!excess_runs.empty())
+    if (u != nullptr && !excess_runs.empty())
       add_excess(y, u);
   }
 

@@ -40,8 +40,8 @@ namespace PeriDeal
 
     /**
      * -F of the computed nodes. Owned and ghost values; without tau (null) only what the extensions
-     * of bonds do. With tau the displacements u have to be those of dilatation_forces(), called
-     * just before.
+     * of bonds do; without u what tensions do. With both the displacements have to be those of
+     * dilatation_forces(), called just before.
      */
     void forces(double *y, const double *u, const double *tau) const;
 

@@ -8,10 +8,11 @@
 #include <algorithm>
 #include <numeric>
 
-#include "family_sums.h"
+#include "correspondence_sums.h"
 #include "gradient_lattice.h"
 #include "large_deformation.h"
 #include "lattice_histories.h"
+#include "with_ghosts.h"
 
 // A node knows its gradient and its law, a bond what both of its nodes make of them.
 
@@ -21,115 +22,14 @@ namespace PeriDeal
 
   namespace
   {
-    template <int dim>
-    void write(double *numbers, const Tensor<2, dim> &tensor)
+    /** Whether a trial is of u, on all processes; of linear bodies never. Collective. */
+    template <typename Trial>
+    bool is_of(const Trial &trial, const Vector &u, const bool is_linear)
     {
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = 0; b < dim; ++b)
-          numbers[dim * a + b] = tensor[a][b];
-    }
-
-
-    template <int dim>
-    inline Tensor<1, dim> times(const double *numbers, const Tensor<1, dim> &vector)
-    {
-      Tensor<1, dim> product;
-      for (unsigned int a = 0; a < dim; ++a)
-        {
-          double sum = numbers[dim * a] * vector[0];
-          for (unsigned int b = 1; b < dim; ++b)
-            sum += numbers[dim * a + b] * vector[b];
-          product[a] = sum;
-        }
-      return product;
-    }
-
-
-    template <int dim>
-    inline Tensor<1, dim> vector_at(const double *numbers)
-    {
-      Tensor<1, dim> vector;
-      for (unsigned int a = 0; a < dim; ++a)
-        vector[a] = numbers[a];
-      return vector;
-    }
-
-
-    /** Add du (W xi)^T. */
-    template <int dim>
-    inline void add_change(Tensor<2, dim>       &sum,
-                           const Tensor<1, dim> &change,
-                           const Tensor<1, dim> &moment)
-    {
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int b = 0; b < dim; ++b)
-          sum[a][b] += change[a] * moment[b];
-    }
-
-
-    /** visit(rows, k) of a family. */
-    template <int dim, typename Visit>
-    void for_each_bond(const BondTable<dim> &bonds,
-                       const Span           &inside,
-                       const Span           &outside,
-                       const Visit          &visit)
-    {
-      for (std::size_t k = inside.begin; k < inside.end; ++k)
-        visit(bonds.body, k);
-      for (std::size_t k = outside.begin; k < outside.end; ++k)
-        visit(bonds.beyond, k);
-    }
-
-
-    /** The sum of du (W xi)^T over the family of a node. */
-    template <int dim>
-    Tensor<2, dim> sum_of_changes(const BondTable<dim> &bonds,
-                                  const BondEnds<dim>  &ends,
-                                  const double         *u,
-                                  const unsigned int    i,
-                                  const Span           &inside,
-                                  const Span           &outside)
-    {
-      Tensor<2, dim> sum;
-      for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
-        add_change(sum, ends.change(u, i, rows.neighbors[k]), rows.moments[k]);
-      });
-      return sum;
-    }
-
-
-    /** Of a node: of W |z_e|^2 and of W z_e . du. */
-    struct ElasticSums
-    {
-      double squares = 0., products = 0.;
-    };
-
-
-    /** Add some of its bonds, which remember something where the law flows. */
-    template <int dim>
-    void add_elastic(ElasticSums           &sums,
-                     const NodeShapes<dim> &shapes,
-                     const BondTable<dim>  &bonds,
-                     const BondEnds<dim>   &ends,
-                     const double          *u,
-                     const unsigned int     i,
-                     const Tensor<2, dim>  &slopes,
-                     const bool             flows,
-                     const Span            &inside,
-                     const Span            &outside)
-    {
-      constexpr unsigned int n_history = Correspondence<dim>::n_history;
-      for_each_bond(bonds, inside, outside, [&](const BondRows<dim> &rows, const std::size_t k) {
-        const double w = shapes.weights().of(&rows == &bonds.beyond)[k];
-        if (w == 0.)
-          return;
-        const Tensor<1, dim> change = ends.change(u, i, rows.neighbors[k]);
-        Tensor<1, dim>       beside = change - slopes * rows.moments[k] / w;
-        if (flows)
-          beside -= vector_at<dim>(&rows.nonlinear.history[n_history * k]);
-        sums.squares += w * beside.norm_square();
-        sums.products += w * (beside * change);
-      });
+      const bool same =
+        !is_linear && trial.known && // else thermal strains may be other ones
+        std::equal(u.begin(), u.begin() + u.locally_owned_size(), trial.displacement.begin());
+      return Utilities::MPI::min(same ? 1 : 0, u.get_mpi_communicator()) > 0;
     }
   } // namespace
 
@@ -315,16 +215,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool Correspondence<dim>::knows(const Vector &u) const
-  {
-    const bool same =
-      !is_linear() && trial.known && // else thermal strains may be other ones
-      std::equal(u.begin(), u.begin() + u.locally_owned_size(), trial.displacement.begin());
-    return Utilities::MPI::min(same ? 1 : 0, families.nodes().communicator()) > 0;
-  }
-
-
-  template <int dim>
   void Correspondence<dim>::find_forces(Vector &y, const Vector &u, const double t) const
   {
     const bool flows = stresses.flows();
@@ -390,7 +280,8 @@ namespace PeriDeal
 
   template <int dim>
   double Correspondence<dim>::energy_of(const std::vector<unsigned int> &list,
-                                        const Vector                    &u) const
+                                        const Vector                    &u,
+                                        const bool                       of_shear) const
   {
     u.update_ghost_values();
     ends.find(u.begin());
@@ -413,9 +304,15 @@ namespace PeriDeal
             if (w > 0.)
               squares += w * (change_at(j) - trial.slopes[i] * moment / w).norm_square();
           });
-        settle(i, squares, squares);
-        sum += shapes[i].share * (families.nodes().volume(i) * stresses[i].stored +
-                                  0.5 * shapes[i].stabilizer * squares);
+        const auto strain = symmetrize(trial.slopes[i]);
+        double     stored = 0.5 * (shapes.of_shear(i, strain) * strain);
+        if (!of_shear)
+          {
+            settle(i, squares, squares);
+            stored = stresses[i].stored;
+          }
+        sum += shapes[i].share *
+               (families.nodes().volume(i) * stored + 0.5 * shapes[i].stabilizer * squares);
       }
     u.set_ghost_state(false);
     stresses.throw_faults();
@@ -449,7 +346,7 @@ namespace PeriDeal
   template <int dim>
   double Correspondence<dim>::energy(const Vector &u) const
   {
-    if (!knows(u) || (lattice.sums && !trial.has_forces))
+    if (!is_of(trial, u, is_linear()) || (lattice.sums && !trial.has_forces))
       {
         Vector y(trial.forces);
         if (lattice.sums)
@@ -462,18 +359,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  double Correspondence<dim>::plastic_work(const Vector &u) const
-  {
-    if (!knows(u))
-      find(u);
-    double sum = 0.;
-    for (unsigned int i = 0; i < shapes.size(); ++i)
-      sum += shapes[i].share * families.nodes().volume(i) * stresses[i].dissipated;
-    return Utilities::MPI::sum(sum, families.nodes().communicator());
-  }
-
-
-  template <int dim>
   double Correspondence<dim>::accept(const Vector &u, const double t)
   {
     if (!stresses.remembers()) // nor dissipates
@@ -481,23 +366,23 @@ namespace PeriDeal
         stresses.accept(t, false, false);
         return 0.;
       }
-    if (!knows(u) || !trial.has_forces || stresses.now() != t)
+    if (!is_of(trial, u, is_linear()) || !trial.has_forces || stresses.now() != t)
       {
         Vector y(trial.forces);
         find_forces(y, u, t);
       }
-    double n_flow = 0.;
+    double n_flow = 0., here = 0.;
     for (unsigned int i = 0; i < shapes.size(); ++i)
-      n_flow += !stresses.flows() || trial.ratios[i] < 1. ? 1. : 0.;
-    bool         flows      = false;
-    const double by_forces  = accepted.take(u,
-                                           trial.forces,
-                                           stored(u, trial.forces),
-                                           n_flow,
-                                           accepted.warms ? plastic_work(u) : 0.,
-                                           families.nodes().communicator(),
-                                           flows);
-    const double dissipated = stresses.is_full() ? plastic_work(u) : by_forces; // of large steps
+      {
+        n_flow += !stresses.flows() || trial.ratios[i] < 1. ? 1. : 0.;
+        here += shapes[i].share * families.nodes().volume(i) * stresses[i].dissipated;
+      }
+    bool           flows  = false;
+    const MPI_Comm all    = families.nodes().communicator();
+    const double   by_law = Utilities::MPI::sum(here, all);
+    const double   by_forces =
+      accepted.take(u, trial.forces, stored(u, trial.forces), n_flow, by_law, all, flows);
+    const double dissipated = stresses.is_full() ? by_law : by_forces; // of large steps
     stresses.accept(t, flows, !stresses.same_states());
     if (flows && stresses.flows())
       remember(u);
@@ -578,7 +463,7 @@ namespace PeriDeal
   {
     if (is_linear())
       return;
-    if (!knows(u))
+    if (!is_of(trial, u, is_linear()))
       find(u);
     if (stresses.is_full())
       {
@@ -690,6 +575,12 @@ namespace PeriDeal
           c * (6. * shape.shear * (at->stress_slope * strain) + at->ratio_slope * of_square);
         c *= at->ratio;
       }
+    if (counted.shear != 1. || counted.bulk != 1.)
+      {
+        const auto of_shear = shapes.of_shear(i, strain);
+        stress              = counted.bulk * (stress - of_shear) + counted.shear * of_shear;
+        c *= counted.shear;
+      }
     const Tensor<2, dim> pull = shapes.deformed.empty() ? Tensor<2, dim>(stress) :
                                                           shapes.deformed[i].change_of_pull(slopes);
     double *const        numbers =
@@ -718,7 +609,10 @@ namespace PeriDeal
           products += shapes.weights().of(is_beyond)[k] *
                       (tangent.own.of(is_beyond)[k] * ends.change(values, i, rows.neighbors[k]));
         });
-      settle_change(i, changes * Tensor<2, dim>(shapes[i].inverse), products);
+      const Tensor<2, dim> slopes = changes * Tensor<2, dim>(shapes[i].inverse);
+      if (is_linear()) // multiply_apart() has them twice
+        trial.slopes[i] = slopes;
+      settle_change(i, slopes, products);
     };
     if (lattice.sums)
       {
@@ -758,10 +652,35 @@ namespace PeriDeal
   template <int dim>
   void Correspondence<dim>::multiply(Vector &y, const Vector &x) const
   {
-    const bool     flows = tangent.any && stresses.flows();
-    const unsigned n     = stresses.flows() ? n_numbers + 1 : n_numbers;
     x.update_ghost_values();
     find_changes(x);
+    sum_changes(y, x);
+    x.set_ghost_state(false);
+  }
+
+
+  template <int dim>
+  void Correspondence<dim>::multiply_apart(Vector &of_shear, Vector &of_bulk, const Vector &x) const
+  {
+    Assert(is_linear(), ExcInternalError());
+    const WithGhosts ghosts(x);
+    counted = {1., 0.};
+    find_changes(x);
+    sum_changes(of_shear, x);
+    counted = {0., 1.};
+    for (unsigned int i = 0; i < shapes.size(); ++i)
+      settle_change(i, trial.slopes[i], 0.);
+    tangent.changes.update_ghost_values();
+    sum_changes(of_bulk, x);
+    counted = {};
+  }
+
+
+  template <int dim>
+  void Correspondence<dim>::sum_changes(Vector &y, const Vector &x) const
+  {
+    const bool          flows  = tangent.any && stresses.flows();
+    const unsigned      n      = stresses.flows() ? n_numbers + 1 : n_numbers;
     const double *const values = x.begin(), *const numbers = tangent.changes.begin();
     if (lattice.sums)
       lattice.sums->find_forces(y.begin(), values, numbers, n);
@@ -802,14 +721,13 @@ namespace PeriDeal
                              return force + shapes.weights().of(&rows == &bonds.beyond)[k] *
                                               (c * ends.change(values, i, j) + beside);
                            });
-    x.set_ghost_state(false);
   }
 
 
   template <int dim>
   NodalTensors<dim> Correspondence<dim>::tensors(const Vector &u) const
   {
-    if (!knows(u))
+    if (!is_of(trial, u, is_linear()))
       find(u);
     NodalTensors<dim> result;
     for (unsigned int i = 0; i < shapes.size(); ++i)

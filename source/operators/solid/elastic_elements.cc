@@ -550,6 +550,8 @@ namespace PeriDeal
       }
     if (breaking)
       breaking->bonds.add_forces(y, u);
+    if (nodal(zone_bonds))
+      nodal(zone_bonds)->add_forces(y, u, t);
     hanging.set(y, 0.);
   }
 
@@ -613,6 +615,8 @@ namespace PeriDeal
         this->released_beside.by_law +=
           shear_energy(*law, u, true) +
           Utilities::MPI::sum(of_bonds, nodes->get_mpi_communicator());
+        if (nodal(zone_bonds))
+          this->released_beside.by_law += nodal(zone_bonds)->accept(u, t);
       }
     law->nodal.accept(u, t);
   }
@@ -642,6 +646,8 @@ namespace PeriDeal
         law->shear.multiply(image, u);
         sum += shear_energy(*law, u, false) - 0.5 * (u * image);
       }
+    if (nodal(zone_bonds))
+      sum += nodal(zone_bonds)->energy(u);
     const double of_bonds = breaking ? breaking->bonds.energy(u, breaking->bonds.nodes(), {}) : 0.;
     return sum + Utilities::MPI::sum(of_bonds, nodes->get_mpi_communicator()) + contact->energy(u);
   }

@@ -5,8 +5,10 @@
 #include <perideal/base/interleaved.h>
 #include <perideal/operators/coupling/node_families.h>
 #include <perideal/operators/solid/nodal_zone.h>
+#include <perideal/scene/rules.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "with_ghosts.h"
 
@@ -53,13 +55,24 @@ namespace PeriDeal
     : laws(coupling.families().nodes(), body)
     , ends(coupling.families())
     , rows(coupling.families(), laws, ends, body, reaching(coupling))
-    , nodal(coupling.families(), ends, completed(rows, laws, body), laws, body)
     , found(interleaved(*coupling.families().nodes().partitioner(), dim))
   {
+    auto families = std::make_unique<Correspondence<dim>>(coupling.families(),
+                                                          ends,
+                                                          completed(rows, laws, body),
+                                                          laws,
+                                                          body);
+    nodal         = families.get();
+    if (relaxes_at_nodes(body))
+      by_family = std::make_unique<RelaxingFamilies<dim>>(shear_and_bulk(std::move(families), ends),
+                                                          body.material.law,
+                                                          found);
+    else
+      by_family = std::move(families);
     const NodeFamilies<dim> &shares = *coupling.node_families();
-    for (unsigned int i = 0; i < nodal.shapes.size(); ++i)
+    for (unsigned int i = 0; i < nodal->shapes.size(); ++i)
       {
-        nodal.shapes.set_share(i, shares.share_of(i));
+        nodal->shapes.set_share(i, shares.share_of(i));
         rows.for_each(i, [&](const auto &bond) {
           if (shares.share_of(i) > 0. || shares.share_of(bond.neighbor) > 0.)
             n_in_zone += 0.5;
@@ -72,7 +85,7 @@ namespace PeriDeal
   void NodalZone<dim>::add_product(Vector &y, const Vector &x) const
   {
     const KeptGhosts ghosts(x);
-    nodal.multiply(found, x);
+    by_family->multiply(found, x);
     y += found;
   }
 
@@ -81,7 +94,7 @@ namespace PeriDeal
   void NodalZone<dim>::add_forces(Vector &y, const Vector &u, const double t) const
   {
     const KeptGhosts ghosts(u);
-    nodal.find_forces(found, u, t);
+    by_family->find_forces(found, u, t);
     y += found;
   }
 
@@ -90,7 +103,7 @@ namespace PeriDeal
   double NodalZone<dim>::energy(const Vector &u) const
   {
     const KeptGhosts ghosts(u);
-    return nodal.energy(u);
+    return by_family->energy(u);
   }
 
 
@@ -98,7 +111,7 @@ namespace PeriDeal
   double NodalZone<dim>::accept(const Vector &u, const double t)
   {
     const KeptGhosts ghosts(u);
-    return nodal.accept(u, t);
+    return by_family->accept(u, t);
   }
 
 
@@ -106,14 +119,14 @@ namespace PeriDeal
   void NodalZone<dim>::linearize(const Vector &u)
   {
     const KeptGhosts ghosts(u);
-    nodal.linearize(u);
+    by_family->linearize(u);
   }
 
 
   template <int dim>
   void NodalZone<dim>::add_diagonal(Vector &diagonal) const
   {
-    nodal.shapes.find_diagonal(found);
+    nodal->shapes.find_diagonal(found);
     diagonal += found;
   }
 
@@ -121,7 +134,7 @@ namespace PeriDeal
   template <int dim>
   void NodalZone<dim>::add_row_sums(std::vector<double> &sums) const
   {
-    const Vector of_nodes = nodal.shapes.row_sums();
+    const Vector of_nodes = nodal->shapes.row_sums();
     for (unsigned int i = 0; i < sums.size(); ++i)
       sums[i] += of_nodes.local_element(i / dim);
   }

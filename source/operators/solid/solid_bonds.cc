@@ -2,6 +2,7 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <perideal/base/instantiate.h>
+#include <perideal/base/interleaved.h>
 #include <perideal/base/place_text.h>
 #include <perideal/base/user_error.h>
 #include <perideal/operators/solid/bond_softness.h>
@@ -13,12 +14,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "../lattice/state_lattice.h"
 
 namespace PeriDeal
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** Where the body relaxes at nodes, bonds are linear. */
+    template <int dim>
+    Material::Law law_of_bonds(const BodyParameters<dim> &body)
+    {
+      Material::Law law = body.material.law;
+      if (relaxes_at_nodes(body))
+        law.kind = SolidLaw::linear;
+      return law;
+    }
+  } // namespace
+
 
   /** Let families go on beyond the sides of the body. Collective. */
   template <int dim>
@@ -99,10 +115,30 @@ namespace PeriDeal
 
 
   template <int dim>
+  std::unique_ptr<FamilyForces<dim>> SolidBonds<dim>::make_families(const BodyParameters<dim> &body)
+  {
+    std::unique_ptr<Correspondence<dim>> nodal;
+    if (body.elasticity.is_correspondence())
+      nodal = std::make_unique<Correspondence<dim>>(families, ends, rows, laws, body);
+    if (relaxes_at_nodes(body))
+      return std::make_unique<RelaxingFamilies<dim>>(
+        nodal ? shear_and_bulk(std::move(nodal), ends) :
+                shear_and_bulk(ends, rows, laws, sums, forces),
+        body.material.law,
+        Vector(interleaved(*families.nodes().partitioner(), dim)));
+    if (nodal)
+      return nodal;
+    if (body.material.law.yields())
+      return std::make_unique<YieldingFamilies<dim>>(families, ends, rows, laws, body);
+    return {};
+  }
+
+
+  template <int dim>
   SolidBonds<dim>::SolidBonds(Nodes<dim> &nodes, const BodyParameters<dim> &body)
     : families(nodes.find_parts(body.boundary_conditions), body)
     , laws(families.nodes(), body)
-    , law(body.material.law, {body.domain.files.folder, body.domain.files.communicator})
+    , law(law_of_bonds(body), {body.domain.files.folder, body.domain.files.communicator})
     , ends(families)
     , rows(families, laws, ends, body)
     , sums(families, ends, rows, laws)
@@ -124,11 +160,8 @@ namespace PeriDeal
     rows.find_springs(body.elasticity.has_full_kinematics(),
                       of_scene.softens() ? BondSoftness::n : n_history);
     if (!body.elasticity.is_correspondence())
-      sums.take_lattice();
-    if (body.elasticity.is_correspondence())
-      by_family = std::make_unique<Correspondence<dim>>(families, ends, rows, laws, body);
-    else if (of_scene.yields())
-      by_family = std::make_unique<YieldingFamilies<dim>>(families, ends, rows, laws, body);
+      sums.take_lattice(relaxes_at_nodes(body));
+    by_family = make_families(body);
   }
 
 

@@ -30,21 +30,23 @@ namespace PeriDeal
 
 
   template <int dim>
-  void SolidSums<dim>::take_lattice()
+  void SolidSums<dim>::take_lattice(const bool of_unit)
   {
+    c_is_1 = of_unit;
     if (bonds.body.units.empty())
       return;
     const StateLaw      law = laws.reference();
     const double        q   = bonds.complete_weighted;
     LatticeCoefficients coefficients;
     coefficients.stiffness  = law.extension / q;
-    coefficients.dilatation = laws.volumetric ? law.volumetric * law.dilatation / (q * q) : 0.;
+    const auto c            = [&](const StateLaw &of) { return c_is_1 ? 1. : of.volumetric; };
+    coefficients.dilatation = laws.volumetric ? c(law) * law.dilatation / (q * q) : 0.;
     for (unsigned int i = 0; i < families.nodes().n_local(); ++i)
       {
         const double own = laws.weighted.local_element(i);
         coefficients.excesses.push_back(0.5 * (laws.stiffness(i) / coefficients.stiffness - 1.));
         if (laws.volumetric && i < families.nodes().n_owned())
-          coefficients.dilatations.push_back(laws[i].volumetric * laws[i].dilatation / (own * own));
+          coefficients.dilatations.push_back(c(laws[i]) * laws[i].dilatation / (own * own));
       }
     std::vector<bool> computed;
     for (unsigned int i = 0; i < families.nodes().n_owned(); ++i)
@@ -120,7 +122,8 @@ namespace PeriDeal
         [&](const unsigned int j, const Tensor<1, dim> &p, const double, const double w) {
           sum += w * change_along(p, own, value(j));
         });
-      return laws.tangent_tension(rows.nodes[row], sum);
+      return c_is_1 ? laws.unit_tension(rows.nodes[row], sum) :
+                      laws.tangent_tension(rows.nodes[row], sum);
     };
     for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
       tau[bonds.body.nodes[row]] =
@@ -197,6 +200,44 @@ namespace PeriDeal
           y.local_element(dim * bonds.beyond.nodes[row] + d) -= force[d];
       }
     images.pass_on(y);
+  }
+
+
+  template <int dim>
+  void SolidSums<dim>::find_forces_of_tensions(Vector &y, const double *tau) const
+  {
+    if (lattice)
+      lattice->forces(y.begin(), nullptr, tau);
+    for (std::size_t row = 0; row < bonds.body.nodes.size(); ++row)
+      {
+        const unsigned int i = bonds.body.nodes[row];
+        Tensor<1, dim>     force;
+        visit_parts<false>(
+          bonds.body,
+          row,
+          [&](const unsigned int j, const Tensor<1, dim> &p, const double, const double w) {
+            force += ((tau[i] + tau[j]) * w) * p;
+          });
+        for (unsigned int d = 0; d < dim; ++d)
+          y.local_element(dim * i + d) = -force[d];
+      }
+    if (!ends.images)
+      return;
+    ends.images->begin_forces();
+    for (std::size_t row = 0; row < bonds.beyond.nodes.size(); ++row)
+      {
+        const unsigned int i = bonds.beyond.nodes[row];
+        visit_parts<true>(
+          bonds.beyond,
+          row,
+          [&](const unsigned int j, const Tensor<1, dim> &p, const double, const double w) {
+            const Tensor<1, dim> of_bond = (tau[i] * w) * p;
+            for (unsigned int d = 0; d < dim; ++d)
+              y.local_element(dim * i + d) -= of_bond[d];
+            ends.images->pull(ends.image(j), of_bond);
+          });
+      }
+    ends.images->pass_on(y);
   }
 
 

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "with_ghosts.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -36,66 +38,120 @@ namespace PeriDeal
   }
 
 
+  namespace
+  {
+    /** Of the bonds of the ordinary solid, one by one. */
+    template <int dim>
+    NodalTensors<dim> tensors_of_bonds(const SolidBonds<dim> &bonds,
+                                       const Vector          &u,
+                                       const Vector          &tau)
+    {
+      const auto *const          yielding       = bonds.yielding();
+      const Nodes<dim>          &nodes          = bonds.families.nodes();
+      const NodeLaws<dim>       &laws           = bonds.laws;
+      const BondEnds<dim>       &ends           = bonds.ends;
+      const BondKinematics<dim> &kinematics     = bonds.kinematics;
+      const bool                 full           = kinematics.is_full();
+      const bool                 several_phases = laws.several_phases;
+      NodalTensors<dim>          result;
+      result.stress.resize(nodes.n_owned());
+      result.strain.resize(nodes.n_owned());
+      u.update_ghost_values();
+      ends.find(u.begin());
+      for (unsigned int i = 0; i < nodes.n_owned(); ++i)
+        {
+          Tensor<2, dim> gradient, shape, stress;
+          bonds.rows.for_each(i, [&](const auto &bond) {
+            const unsigned int   j      = bond.neighbor;
+            const Tensor<1, dim> xi     = ends.vector(i, j);
+            const Tensor<1, dim> eta    = ends.change(u.begin(), i, j);
+            const double         x2     = xi.norm_square();
+            const double         weight = full ? kinematics.length(bond) / std::sqrt(x2) :
+                                                 (bond.moment * xi) / x2; // W
+            gradient += weight * outer_product(eta, xi);
+            shape += weight * outer_product(xi, xi);
+            if (yielding != nullptr)
+              {
+                stress += weight * yielding->force(i, bond, several_phases) * outer_product(xi, xi);
+                return;
+              }
+            const double product = bond.spring * bonds.forces.effective_moment(u.begin(), i, bond);
+            // V_i V_j t/x of this end, or with several phases the mean of both; of a fictitious
+            // node with that of which it is an image. What the spring has of this end:
+            const unsigned int   o   = ends.origin(j);
+            const double         own = laws.stiffness(i), other = laws.stiffness(o);
+            const double         this_end = ends.is_fictitious(j) ? 1. : own / (own + other);
+            const double         force    = several_phases ?
+                                              weight * 0.5 *
+                                     (tau.local_element(i) + tau.local_element(o) +
+                                      product * this_end * (1. + other / own)) :
+                                              weight * (tau.local_element(i) + product * this_end);
+            const Tensor<1, dim> y        = full ? xi + eta : xi;
+            stress += (full ? force * std::sqrt(x2) / y.norm() : force) * outer_product(y, y);
+          });
+          // Few bonds may be left, or none.
+          const bool held = determinant(shape) > 1e-12 * std::pow(trace(shape) / dim, dim);
+          const Tensor<2, dim> slopes = held ? gradient * invert(shape) : Tensor<2, dim>();
+          result.strain[i]            = symmetrize(slopes);
+          result.stress[i]            = symmetrize(stress) / nodes.volume(i);
+          if (!full)
+            continue;
+          result.strain[i] += 0.5 * symmetrize(transpose(slopes) * slopes);
+          result.stress[i] /= determinant(Tensor<2, dim>(unit_symmetric_tensor<dim>()) + slopes);
+        }
+      u.set_ghost_state(false);
+      return result;
+    }
+
+
+    /** What shear adds where displacements are @p relaxed for it, in place of u. */
+    template <int dim>
+    NodalTensors<dim> relaxed_tensors(const SolidBonds<dim> &bonds,
+                                      const Vector          &u,
+                                      const Vector          &relaxed)
+    {
+      if (const auto *const nodal = bonds.correspondence())
+        {
+          NodalTensors<dim> result = nodal->tensors(u);
+          const auto        strain = nodal->tensors(relaxed).strain;
+          for (unsigned int i = 0; i < result.stress.size(); ++i)
+            {
+              const SymmetricTensor<2, dim> change = strain[i] - result.strain[i];
+              result.stress[i] += nodal->shapes.of_shear(i, change);
+              if (dim == 2)
+                result.out_of_plane[i] -= 2. / 3. * nodal->shapes[i].shear * trace(change);
+            }
+          return result;
+        }
+      Vector tau(bonds.families.nodes().partitioner());
+      bonds.sums.find_tensions(tau.begin(), u.begin()); // of c = 1
+      Vector tau_relaxed(tau);
+      bonds.sums.find_tensions(tau_relaxed.begin(), relaxed.begin());
+      for (unsigned int i = 0; i < tau.locally_owned_size(); ++i)
+        {
+          const double of_shear = LinearPeridynamicSolid::shear_factor(bonds.laws[i]);
+          tau.local_element(i)  = bonds.laws[i].volumetric * tau.local_element(i) +
+                                 of_shear * (tau_relaxed.local_element(i) - tau.local_element(i));
+        }
+      tau.update_ghost_values();
+      NodalTensors<dim> result = tensors_of_bonds(bonds, relaxed, tau);
+      result.strain            = tensors_of_bonds(bonds, u, tau).strain;
+      return result;
+    }
+  } // namespace
+
+
   template <int dim>
   NodalTensors<dim> nodal_tensors(const SolidBonds<dim> &bonds, const Vector &u, const Vector &tau)
   {
+    if (bonds.relaxing() != nullptr)
+      {
+        const WithGhosts ghosts(u);
+        return relaxed_tensors(bonds, u, bonds.relaxing()->effective(u));
+      }
     if (const auto *const nodal = bonds.correspondence())
       return nodal->tensors(u);
-    const auto *const          yielding       = bonds.yielding();
-    const Nodes<dim>          &nodes          = bonds.families.nodes();
-    const NodeLaws<dim>       &laws           = bonds.laws;
-    const BondEnds<dim>       &ends           = bonds.ends;
-    const BondKinematics<dim> &kinematics     = bonds.kinematics;
-    const bool                 full           = kinematics.is_full();
-    const bool                 several_phases = laws.several_phases;
-    NodalTensors<dim>          result;
-    result.stress.resize(nodes.n_owned());
-    result.strain.resize(nodes.n_owned());
-    u.update_ghost_values();
-    ends.find(u.begin());
-    for (unsigned int i = 0; i < nodes.n_owned(); ++i)
-      {
-        Tensor<2, dim> gradient, shape, stress;
-        bonds.rows.for_each(i, [&](const auto &bond) {
-          const unsigned int   j      = bond.neighbor;
-          const Tensor<1, dim> xi     = ends.vector(i, j);
-          const Tensor<1, dim> eta    = ends.change(u.begin(), i, j);
-          const double         x2     = xi.norm_square();
-          const double         weight = full ? kinematics.length(bond) / std::sqrt(x2) :
-                                               (bond.moment * xi) / x2; // W
-          gradient += weight * outer_product(eta, xi);
-          shape += weight * outer_product(xi, xi);
-          if (yielding != nullptr)
-            {
-              stress += weight * yielding->force(i, bond, several_phases) * outer_product(xi, xi);
-              return;
-            }
-          const double product = bond.spring * bonds.forces.effective_moment(u.begin(), i, bond);
-          // V_i V_j t/x of this end, or with several phases the mean of both; of a fictitious node
-          // with that of which it is an image. What the spring has of this end:
-          const unsigned int   o   = ends.origin(j);
-          const double         own = laws.stiffness(i), other = laws.stiffness(o);
-          const double         this_end = ends.is_fictitious(j) ? 1. : own / (own + other);
-          const double         force    = several_phases ?
-                                            weight * 0.5 *
-                                   (tau.local_element(i) + tau.local_element(o) +
-                                    product * this_end * (1. + other / own)) :
-                                            weight * (tau.local_element(i) + product * this_end);
-          const Tensor<1, dim> y        = full ? xi + eta : xi;
-          stress += (full ? force * std::sqrt(x2) / y.norm() : force) * outer_product(y, y);
-        });
-        // Few bonds may be left, or none.
-        const bool           held = determinant(shape) > 1e-12 * std::pow(trace(shape) / dim, dim);
-        const Tensor<2, dim> slopes = held ? gradient * invert(shape) : Tensor<2, dim>();
-        result.strain[i]            = symmetrize(slopes);
-        result.stress[i]            = symmetrize(stress) / nodes.volume(i);
-        if (!full)
-          continue;
-        result.strain[i] += 0.5 * symmetrize(transpose(slopes) * slopes);
-        result.stress[i] /= determinant(Tensor<2, dim>(unit_symmetric_tensor<dim>()) + slopes);
-      }
-    u.set_ghost_state(false);
-    return result;
+    return tensors_of_bonds(bonds, u, tau);
   }
 
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "inversion.h"
 #include "large_deformation.h"
@@ -125,8 +126,8 @@ namespace PeriDeal
     if (solid.thermal.any() && !solid.forces.is_bond_by_bond() && !solid.flows())
       {
         scratch = 0.;
-        if (solid.by_family)
-          solid.by_family->find_forces(thermal_loads, scratch, 0.);
+        if (const auto *const nodal = solid.correspondence()) // what relaxes has no part in them
+          nodal->find_forces(thermal_loads, scratch, 0.);
         else
           {
             find_tensions(scratch, true);
@@ -134,7 +135,7 @@ namespace PeriDeal
           }
         thermal_loads *= -1.;
         if (solid.ends.images)
-          solid.ends.images->keep_forces();
+          solid.ends.images->kept_forces = solid.ends.images->sums_of_forces();
       }
     this->keep_constant_loads();
   }
@@ -186,9 +187,11 @@ namespace PeriDeal
       nodal->multiply(y, v);
     else
       {
+        const double slope = std::exchange(solid.laws.slope, 1.); // viscosity does not relax
         v.update_ghost_values();
         sum_forces(y, v, false);
         v.set_ghost_state(false);
+        solid.laws.slope = slope;
       }
     conditions->mask(y);
   }
@@ -197,7 +200,7 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::find_forces(Vector &y, const Vector &u, const double t) const
   {
-    if (solid.flows())
+    if (solid.remembers())
       {
         solid.by_family->find_forces(y, u, t);
         return;
@@ -280,6 +283,8 @@ namespace PeriDeal
     conditions->add_reactions(reactions, sums);
     if (solid.ends.images)
       {
+        if (solid.relaxing() != nullptr)
+          solid.relaxing()->pull_images(u);
         // Bonds to mirror images pull at the body; those of the last application are known.
         for (const auto &[side, force] : solid.ends.images->forces_of_planes())
           if (force != Tensor<1, dim>())
@@ -361,7 +366,7 @@ namespace PeriDeal
   template <int dim>
   Spectrum StateOperator<dim>::spectrum() const
   {
-    if (solid.flows()) // steps have to be stable where it does not, any more
+    if (solid.by_family) // steps have to be stable where it does not flow or relax, any more
       solid.by_family->forget_tangent();
     const Vector of_dilatations = find_sums_of_dilatations(solid);
     // Rows of correspondence are those of numbers, not of blocks.
@@ -398,7 +403,7 @@ namespace PeriDeal
   Inversion StateOperator<dim>::inverted(const Vector &u) const
   {
     // Displacements may be of any size.
-    if ((solid.law.any() || solid.flows()) && !solid.kinematics.is_full())
+    if ((solid.law.any() || solid.remembers()) && !solid.kinematics.is_full())
       return {};
     const Nodes<dim> &nodes  = solid.families.nodes();
     const auto       &layout = *nodes.partitioner();
@@ -447,7 +452,7 @@ namespace PeriDeal
   template <int dim>
   void StateOperator<dim>::accept(const Vector &u, const double t)
   {
-    if (solid.flows())
+    if (solid.remembers())
       this->released_beside.by_law += solid.by_family->accept(u, t);
     if (!solid.law.any())
       return;
@@ -602,9 +607,11 @@ namespace PeriDeal
     const unsigned long long before = this->n_broken_bonds();
     const auto               change = breakage.break_bonds(u, t, share, [&]() {
       solid.renew_gradients(breakage.nodes_at_work());
+      const auto &at_work = breakage.nodes_at_work();
+      if (const auto *const relaxing = solid.relaxing())
+        return relaxing->energy_of(at_work, u);
       const auto *const nodal = solid.correspondence();
-      return nodal != nullptr ? nodal->energy_of(breakage.nodes_at_work(), u) :
-                                              solid.forces.energy_of(breakage.nodes_at_work(), u);
+      return nodal != nullptr ? nodal->energy_of(at_work, u) : solid.forces.energy_of(at_work, u);
     });
     if (!change)
       {
@@ -662,12 +669,12 @@ namespace PeriDeal
     });
     if (archive.loads() && this->brittle())
       follow_bonds();
-    if (!solid.law.any() && !solid.flows())
+    if (!solid.law.any() && !solid.remembers())
       return;
     const Archive::Part part(archive, "law");
     solid.law.exchange(archive);
     archive.exchange("dissipated", this->released_beside.by_law);
-    if (solid.flows())
+    if (solid.remembers())
       solid.by_family->exchange(archive, keys);
     if (solid.law.n_history() > 0)
       exchange_histories(solid.rows, archive, keys, solid.law.n_history());

@@ -57,7 +57,8 @@ namespace PeriDeal
          nullptr,
          std::vector<types::global_dof_index>(dofs.get_fe().n_dofs_per_cell()),
          dealii::Vector<double>(dim * dofs.get_fe().n_dofs_per_cell()),
-         {}}
+         {},
+         false}
   {
     at.points.resize(at.strains.values().n_quadrature_points);
     if (kinematics.is_full)
@@ -144,7 +145,7 @@ namespace PeriDeal
                                       point.state.data(),
                                       with_tangents ? &point.tangent : nullptr,
                                       u == nullptr);
-        unsymmetric    = unsymmetric || !point.response.has_symmetric_tangent;
+        at.unsymmetric = at.unsymmetric || !point.response.has_symmetric_tangent;
       }
   }
 
@@ -152,7 +153,7 @@ namespace PeriDeal
   template <int dim>
   bool StressCells<dim>::has_symmetric_tangents() const
   {
-    return Utilities::MPI::max(unsymmetric ? 1 : 0, dofs.get_communicator()) == 0;
+    return Utilities::MPI::max(at.unsymmetric ? 1 : 0, dofs.get_communicator()) == 0;
   }
 
 
@@ -215,7 +216,7 @@ namespace PeriDeal
   {
     std::vector<types::global_dof_index> unknowns(at.u.size());
     FullMatrix<double>                   of_cell;
-    unsymmetric = false;
+    at.unsymmetric = false;
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {

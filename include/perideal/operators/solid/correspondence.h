@@ -93,11 +93,16 @@ namespace PeriDeal
       tangent.any = false;
     }
 
-    /** Of these owned nodes alone. Collective. */
-    double energy_of(const std::vector<unsigned int> &nodes, const Vector &u) const;
+    /** Of these owned nodes alone; or what shear stores in them. Collective. */
+    double energy_of(const std::vector<unsigned int> &nodes,
+                     const Vector                    &u,
+                     const bool                       of_shear = false) const;
 
-    /** As YieldingFamilies::plastic_work(). Collective. */
-    double plastic_work(const Vector &u) const;
+    /**
+     * What the shear modulus and the bulk modulus do of multiply(), z with shear. The law is
+     * linear, in three dimensions or in plane strain, with two moduli. Collective.
+     */
+    void multiply_apart(Vector &of_shear, Vector &of_bulk, const Vector &x) const;
 
     /**
      * Stresses of the law and strains sym G of the owned nodes, with full kinematics Cauchy's
@@ -128,8 +133,8 @@ namespace PeriDeal
     };
 
     void find(const Vector &u) const;
-    void find_changes(const Vector &x) const; // in the tangent; ghosts are up to date
-    bool knows(const Vector &u) const;
+    void find_changes(const Vector &x) const;           // in the tangent; ghosts are up to date
+    void sum_changes(Vector &y, const Vector &x) const; // the same, of the last find_changes()
     void remember(const Vector &u);
     void keep_elastic(const Vector &u);
 
@@ -166,6 +171,12 @@ namespace PeriDeal
     } mutable trial;
 
     StepWork accepted;
+
+    /** What counts of the elastic body in the tangent. */
+    struct
+    {
+      double shear = 1., bulk = 1.;
+    } mutable counted;
 
     /** Of a node that flows. */
     struct Flow

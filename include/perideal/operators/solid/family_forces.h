@@ -20,8 +20,14 @@ namespace PeriDeal
   public:
     virtual ~FamilyForces() = default;
 
-    /** Forces are K u. Not collective. */
+    /** Forces are linear in u, and K is always the same in a step. Not collective. */
     virtual bool is_linear() const = 0;
+
+    /** Forces are others than K u: those of find_forces(), by what was accepted. Not collective. */
+    virtual bool remembers() const
+    {
+      return !is_linear();
+    }
 
     /** K is that of multiply(); else that of the linear bonds. Not collective. */
     virtual bool has_tangent() const

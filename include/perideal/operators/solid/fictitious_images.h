@@ -124,13 +124,10 @@ namespace PeriDeal
     /** Adds what the nodes get of the forces. Collective. */
     void pass_on(Vector &y) const;
 
-    /**
-     * Let forces_of_planes() count the present forces to all later ones: those of thermal strains,
-     * which are loads.
-     */
-    void keep_forces()
+    /** The forces since begin_forces(), by image and component. */
+    std::vector<double> &sums_of_forces() const
     {
-      kept_forces = forces;
+      return forces;
     }
 
     /**
@@ -140,6 +137,9 @@ namespace PeriDeal
     std::map<dealii::types::boundary_id, dealii::Tensor<1, dim>> forces_of_planes() const;
 
     std::size_t memory_consumption() const;
+
+    /** What forces_of_planes() counts to all forces: those of thermal strains, which are loads. */
+    std::vector<double> kept_forces;
 
   private:
     const Nodes<dim>               &nodes;
@@ -151,7 +151,6 @@ namespace PeriDeal
     std::vector<unsigned int>       places;   // of each term's node in these
     std::vector<bool>               followed; // by owned node; empty: none
     mutable std::vector<double>     values, forces, sums; // sums: of the pulled nodes
-    std::vector<double>             kept_forces;
-    mutable Vector                  passed; // where there are other processes
+    mutable Vector                  passed;               // where there are other processes
   };
 } // namespace PeriDeal

@@ -57,6 +57,12 @@ namespace PeriDeal
     /** The state at t is accepted. */
     void accept(const double t);
 
+    /** The time of the last accepted state; 0: none. */
+    double last() const
+    {
+      return accepted;
+    }
+
     /** Throws UserError if a law of the user has had a fault on any process. Collective. */
     void throw_faults(const MPI_Comm communicator) const;
 

@@ -4,18 +4,19 @@
 #pragma once
 
 #include <perideal/operators/coupling/coupling.h>
-#include <perideal/operators/solid/correspondence.h>
 #include <perideal/operators/solid/node_laws.h>
+#include <perideal/operators/solid/relaxing_families.h>
 
+#include <memory>
 #include <vector>
 
 namespace PeriDeal
 {
   /**
    * The nodes of correspondence that a coupling blends with finite elements, where their law is not
-   * linear, so that no matrix has their families: the forces are those of Correspondence, each
-   * energy by its share (NodeFamilies::share_of()). Nodes whose family does not reach the zone
-   * store no bonds.
+   * linear or relaxes, so that no matrix has their families: the forces are those of
+   * Correspondence, each energy by its share (NodeFamilies::share_of()). Nodes whose family does
+   * not reach the zone store no bonds.
    *
    * Displacements need no ghosts, and keep those they have. All functions are collective unless
    * stated.
@@ -43,12 +44,12 @@ namespace PeriDeal
     /** As NodeStresses. Collective. */
     bool have_symmetric_tangents() const
     {
-      return nodal.stresses.have_symmetric_tangents();
+      return nodal->stresses.have_symmetric_tangents();
     }
 
     void exchange(Archive &archive, const NodeKeys &keys)
     {
-      nodal.exchange(archive, keys);
+      by_family->exchange(archive, keys);
     }
 
     /** Of K before anything has happened. */
@@ -66,8 +67,8 @@ namespace PeriDeal
     /** Not collective. */
     std::size_t memory_consumption() const
     {
-      return laws.memory_consumption() + rows.memory_consumption() + nodal.memory_consumption() +
-             found.memory_consumption();
+      return laws.memory_consumption() + rows.memory_consumption() +
+             by_family->memory_consumption() + found.memory_consumption();
     }
 
   private:
@@ -77,8 +78,11 @@ namespace PeriDeal
     NodeLaws<dim>       laws;
     const BondEnds<dim> ends;
     BondTable<dim>      rows;
-    Correspondence<dim> nodal;
-    double              n_in_zone = 0.;
-    mutable Vector      found; // memory
+
+    std::unique_ptr<FamilyForces<dim>> by_family;
+    Correspondence<dim>               *nodal;
+
+    double         n_in_zone = 0.;
+    mutable Vector found; // memory
   };
 } // namespace PeriDeal

@@ -52,6 +52,13 @@ namespace PeriDeal
                                                    sum);
     }
 
+    /** tension() of c = 1. */
+    double unit_tension(const unsigned int i, const double sum) const
+    {
+      const double q = weighted.local_element(i);
+      return (*this)[i].dilatation * sum / (q * q * nodes.volume(i));
+    }
+
     /** tension() in the tangent (slope). */
     double tangent_tension(const unsigned int i, const double sum) const
     {

@@ -103,6 +103,13 @@ namespace PeriDeal
       return stiffnesses[list[i].stiffness];
     }
 
+    /** The stress of the shear modulus, in three dimensions and in plane strain. */
+    Full of_shear(const unsigned int i, const Full &strain) const
+    {
+      return 2. * list[i].shear *
+             (strain - trace(strain) / 3. * dealii::unit_symmetric_tensor<dim>());
+    }
+
     /** So much of the energy of an owned node counts. */
     void set_share(const unsigned int i, const double share)
     {

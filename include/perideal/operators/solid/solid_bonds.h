@@ -3,9 +3,7 @@
 
 #pragma once
 
-#include <perideal/operators/solid/bond_forces.h>
-#include <perideal/operators/solid/correspondence.h>
-#include <perideal/operators/solid/solid_sums.h>
+#include <perideal/operators/solid/relaxing_families.h>
 #include <perideal/operators/solid/yielding_families.h>
 
 #include <limits>
@@ -55,9 +53,22 @@ namespace PeriDeal
       return dynamic_cast<const YieldingFamilies<dim> *>(by_family.get());
     }
 
-    const Correspondence<dim> *correspondence() const
+    const RelaxingFamilies<dim> *relaxing() const
     {
-      return dynamic_cast<const Correspondence<dim> *>(by_family.get());
+      return dynamic_cast<const RelaxingFamilies<dim> *>(by_family.get());
+    }
+
+    /** Families of correspondence, whose body relaxes or not; or null. */
+    Correspondence<dim> *correspondence() const
+    {
+      return relaxing() != nullptr ? relaxing()->correspondence() :
+                                     dynamic_cast<Correspondence<dim> *>(by_family.get());
+    }
+
+    /** Families make forces that follow from what was accepted, or are not linear. */
+    bool remembers() const
+    {
+      return by_family && by_family->remembers();
     }
 
     /** Families make forces that are not linear. */
@@ -69,8 +80,11 @@ namespace PeriDeal
     /** Some bonds of these owned nodes bear nothing any more. Not collective. */
     void renew_gradients(const std::vector<unsigned int> &of_nodes)
     {
-      if (auto *const nodal = dynamic_cast<Correspondence<dim> *>(by_family.get()))
+      if (auto *const nodal = correspondence())
         nodal->renew(of_nodes);
+      if (auto *const of_law = dynamic_cast<RelaxingFamilies<dim> *>(by_family.get());
+          of_law != nullptr && !of_nodes.empty())
+        of_law->renew();
     }
 
     /** What has been found at surfaces. */
@@ -85,10 +99,11 @@ namespace PeriDeal
     } corrections;
 
   private:
-    void complete_families(const BodyParameters<dim> &body);
-    void correct_surface(const BodyParameters<dim> &body);
-    void part(const unsigned int i, const double t);
-    bool has_parted(const unsigned int i) const; // since the start
+    void                               complete_families(const BodyParameters<dim> &body);
+    std::unique_ptr<FamilyForces<dim>> make_families(const BodyParameters<dim> &body);
+    void                               correct_surface(const BodyParameters<dim> &body);
+    void                               part(const unsigned int i, const double t);
+    bool                               has_parted(const unsigned int i) const; // since the start
 
     /** q with the cracks as they are, broken bonds included. */
     double     weight_left(const unsigned int i, std::string &message) const;

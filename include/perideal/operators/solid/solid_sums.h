@@ -29,8 +29,11 @@ namespace PeriDeal
               const NodeLaws<dim>  &laws);
     ~SolidSums();
 
-    /** Once q is final, and on ghosts: take over those nodes that store no bonds. */
-    void take_lattice();
+    /**
+     * Once q is final, and on ghosts: take over those nodes that store no bonds.
+     * @param c_is_1 tensions are those of c = 1, forces those of any tensions
+     */
+    void take_lattice(const bool c_is_1 = false);
 
     bool has_lattice() const
     {
@@ -40,7 +43,7 @@ namespace PeriDeal
     /** The family of an owned node and those of its neighbours are like most others. */
     bool is_regular(const unsigned int i) const;
 
-    /** tau of the owned nodes, thermal strains left aside. Not collective. */
+    /** tau of the owned nodes, of c or 1, thermal strains left aside. Not collective. */
     void find_tensions(double *tau, const double *u) const;
 
     /**
@@ -48,6 +51,9 @@ namespace PeriDeal
      * find_tensions(), or null: only what the extensions of bonds do. Collective.
      */
     void find_forces(Vector &y, const double *u, const double *tau) const;
+
+    /** y = -F of tensions of owned and ghost nodes alone, without extensions. Collective. */
+    void find_forces_of_tensions(Vector &y, const double *tau) const;
 
     std::size_t memory_consumption() const;
 
@@ -61,5 +67,6 @@ namespace PeriDeal
     const BondTable<dim>              &bonds;
     const NodeLaws<dim>               &laws;
     std::unique_ptr<StateLattice<dim>> lattice; // or none
+    bool                               c_is_1 = false;
   };
 } // namespace PeriDeal

@@ -196,8 +196,7 @@ namespace PeriDeal
     } warm;
 
     StressSteps  steps;
-    mutable Trip inverted;            // the point that is turned inside out most
-    mutable bool unsymmetric = false; // some tangent of an own cell
+    mutable Trip inverted; // the point that is turned inside out most
 
     /** The cell that is looked at. */
     struct Looked
@@ -207,6 +206,7 @@ namespace PeriDeal
       std::vector<dealii::types::global_dof_index> nodes;
       dealii::Vector<double>                       u;
       std::vector<LawPoint>                        points;
+      bool                                         unsymmetric; // some tangent so far
     };
     mutable Looked at;
   };
