@@ -249,6 +249,9 @@ namespace PeriDeal
                   "set Law = softening\nset Tensile strength = 1e3\nset Fracture energy = 1e9\n",
                   "state-based");
       measure_law("linear, correspondence", "", "correspondence");
+      measure_law("viscoelastic, correspondence",
+                  "set Law = viscoelastic\nset Relaxation = 0.5, 1\n",
+                  "correspondence");
       for (const auto &[name, yield_stress] : {std::make_pair("no node has yielded", "100"),
                                                std::make_pair("a part of it yields", "0.5"),
                                                std::make_pair("all nodes have yielded", "0.001")})

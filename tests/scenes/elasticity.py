@@ -229,6 +229,16 @@ def laws():
     balanced(table, runs[1])
     table.show()
 
+    # A crack that runs, on a lattice: what nodes remember is what each bond does.
+    crack = {"Time/End time": "2e-5", "Domain/Cells": "60, 24", "Elasticity/Plane": "strain", "Material/Law": "viscoelastic", "Material/Relaxation": "0.5, 1e-5"}
+    of_nodes, of_bonds = (run_scene("prm/fracture/branching_crack.prm", {**crack, "Peridynamics/Operator form": form, "Output/Fields": "none"}) for form in ("lattice", "stored"))
+    table = Comparison("A viscoelastic plate whose crack runs: histories at nodes, and of each bond")
+    check(of_bonds.total("broken bonds", PD) > 50, "bonds break")
+    table.add("broken bonds", of_nodes.total("broken bonds", PD), of_bonds.total("broken bonds", PD), absolute=0)
+    for quantity in ("strain energy", "energy dissipated by the law", "energy released by broken bonds"):
+        table.add(quantity, of_nodes.total(quantity, PD), of_bonds.total(quantity, PD), relative=1e-9)
+    table.show()
+
     table = Comparison("A bar whose bonds answer by a formula, E = 200")
     for force, wanted in (("s - 5*s^2", 200 * (0.02 - 5 * 0.02**2)), ("s", 4), ("0.1*sin(10*s)", 20 * math.sin(0.2))):
         run = run_quietly("bar_by_formula.prm", {"Material/Bond force": force})
