@@ -19,13 +19,14 @@ UMAT
   const double *F = dfgrd1; /* by columns */
   const double  J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[3] * (F[1] * F[8] - F[2] * F[7]) +
                    F[6] * (F[1] * F[5] - F[2] * F[4]);
-  double b[3][3], trace = 0.;
+  const double size = pow(J, -2. / 3.);
+  double       b[3][3], trace = 0.;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       {
         b[i][j] = 0.;
         for (int k = 0; k < 3; ++k)
-          b[i][j] += pow(J, -2. / 3.) * F[i + 3 * k] * F[j + 3 * k];
+          b[i][j] += size * F[i + 3 * k] * F[j + 3 * k];
       }
   for (int i = 0; i < 3; ++i)
     trace += b[i][i];
