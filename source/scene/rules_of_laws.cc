@@ -137,8 +137,9 @@ namespace PeriDeal
         "Kinematics",
         "found 'full' with 'Law = user' (section 'Material'), which has large deformations in three dimensions and in plane strain. Use 'Plane = strain', or 'linear' here.");
       refuse_cracks(body, refuse);
-      refuse(body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change),
-             "which knows no 'Temperature change' (section 'Elasticity').");
+      refuse(
+        is_warm_body(body) && (coupled || body.elasticity.has_full_kinematics()),
+        "which knows no 'Temperature change' (section 'Elasticity') in 'coupled' and with 'Kinematics = full'; use 'Models = finite elements' or 'peridynamics' and 'Kinematics = linear'.");
       body.elasticity.refuse(
         !body.cracks.cracks.empty() && body.elasticity.contact,
         "Contact",
@@ -307,9 +308,8 @@ namespace PeriDeal
     refuse_softening_bonds(body, by_elements, coupled);
     refuse_plastic_body(body, by_elements, coupled);
     refuse_user_law(body, by_elements, coupled);
-    const bool is_warm = body.elasticity.computes_temperature ||
-                         !is_zero(body.elasticity.temperature_change);
-    material.refuse(by_elements && is_warm && !material.law.yields(),
+    const bool is_warm = is_warm_body(body);
+    material.refuse(by_elements && is_warm && !material.law.yields() && kind != SolidLaw::user,
                     "Law",
                     "found '" + material.text("Law") +
                       "', which knows no 'Temperature change' (section 'Elasticity'), beside or "

@@ -383,6 +383,45 @@ SWELLS = HEAD + """  const double swells = 0.01 * (time[0] + *dtime);
 """
 
 
+# In plane stress; T at the end of a step, and what it has been in STATEV.
+WARMS = HEAD + """  const double T = *temp + *dtemp, nu = props[1], E = props[0] * (1. - T / 1000.) / (1. - nu * nu);
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l)
+      ddsdde[k + 3 * l] = k == 2 || l == 2 ? (k == l) * 0.5 * E * (1. - nu) : k == l ? E : nu * E;
+  for (int k = 0; k < 3; ++k)
+    {
+      stress[k] = 0.;
+      for (int l = 0; l < 3; ++l)
+        stress[k] += ddsdde[k + 3 * l] * (stran[l] + dstran[l]);
+    }
+  if (*kinc > 1 && statev[0] != *temp) /* as the last step has left it */
+    stress[0] = 1e9;
+  statev[0] = T;
+}
+"""
+HEATED = scene_text("""
+Dimension = 2
+Physics = elasticity
+Models = finite elements
+Domain/Lower corner = 0, 0
+Domain/Upper corner = 2, 1
+Domain/Cells = 8, 4
+Material/Thermal expansion = 1e-5
+Boundary conditions/Displacement = left: 0, 0; right: 0, 0; bottom: 0, 0; top: 0, 0
+Elasticity/Solver = newton
+Elasticity/Temperature change = computed
+Elasticity/Reference temperature = 20
+Initial and source/Initial value = 20
+Initial and source/Source = 300
+Time/End time = 1
+Time/Time step = 0.1
+Output/Write at = 0.5
+Output/Probes = 1,0.5
+Output/Fields = none
+Solver/Tolerance = 1e-12
+""")
+
+
 def swelling():
     """Bodies that are loaded by nothing but what their law does at no strain."""
     folder = temporary_folder()
@@ -402,6 +441,13 @@ def swelling():
     at = run.rows(FE, time=10)[0]
     check(at["ux"] == 0 and abs(at["sxx"]) > 0.1, f"a stress is left: {at}")
     table.add("force at no displacement", run.total("force on right in x", FE, time=10), at["sxx"], relative=1e-9)
+    # Heated as a whole and held on all sides, by a modulus that falls with the temperature: what it is told of that, and strains less those of the temperature.
+    warms = user(write_file("warms.c", WARMS, folder), "1000, 0.3", 1)
+    for name, model, settings in (("elements", FE, {}), ("nodes", PD, nodal)):
+        run = run_scene(HEATED, {**warms, **settings}, ranks=2 if model == PD else 1)
+        for time in (0.5, 1):
+            T = 20 + 300 * time
+            table.add(f"{name}, heated to {T}: sxx", run.rows(model, time=time)[0]["sxx"], -1000 * (1 - T / 1000) / 0.7 * 1e-5 * (T - 20), relative=1e-9)
     table.show()
 
 

@@ -33,6 +33,9 @@ namespace PeriDeal
     kind.is_linear = dynamic_cast<const LinearStress *>(law.law.get()) != nullptr;
     kind.is_full   = body.elasticity.has_full_kinematics();
     find_parameters();
+    for (unsigned int i = 0; i < nodes.n_owned() && is_warm(body); ++i)
+      warm.temperatures.push_back(temperature_at_start(body, nodes.position(i)));
+    warm.accepted = warm.temperatures;
     states.resize(nodes.n_owned() * law.law->n_state(), 0.);
     next = states;
     responses.resize(nodes.n_owned());
@@ -68,7 +71,7 @@ namespace PeriDeal
   {
     const bool is_first = warm.strains.empty();
     if (changes.size() == 0 && is_zero(body.elasticity.temperature_change))
-      return;
+      return; // it is computed, and not known yet, or there is none
     warm.strains.clear();
     warm.temperatures.clear();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -106,9 +109,10 @@ namespace PeriDeal
                         parameters.data() + number_of[i] * law.law->n_parameters(),
                         states.data() + i * law.law->n_state()};
     double *const       to = next.data() + i * law.law->n_state();
-    if (!warm.strains.empty())
+    if (!warm.temperatures.empty())
       {
-        at.strain -= warm.strains[i] * unit_symmetric_tensor<3>();
+        if (!warm.strains.empty()) // at the start the body is at rest
+          at.strain -= warm.strains[i] * unit_symmetric_tensor<3>();
         at.temperature = warm.temperatures[i];
         at.warming     = warm.temperatures[i] - warm.accepted[i];
       }

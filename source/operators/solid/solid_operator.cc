@@ -51,7 +51,8 @@ namespace PeriDeal
       (control.computes_temperature || !is_zero(control.temperature_change)) &&
         expansion.is_constant() && expansion.value(Point<dim>()) == 0. &&
         !(body.material.breaks() && limit_of_bonds(body.material).depends_on_temperature()) &&
-        !body.material.law.yield_depends_on_temperature(),
+        !body.material.law.yield_depends_on_temperature() &&
+        body.material.law.kind != SolidLaw::user, // which is told the temperature
       "Temperature change",
       "has no effect: 'Thermal expansion' in section 'Material' is 0.");
     domain.refuse(

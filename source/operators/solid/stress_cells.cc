@@ -131,10 +131,11 @@ namespace PeriDeal
             continue;
           }
         trial.strain = at.deformed ? at.deformed->strain(q) : at.strains.strain(q, at.u);
-        if (!warm.strains.empty() && u != nullptr)
+        if (!warm.strains.empty())
           {
             const std::size_t n = first_of(cell) + q;
-            trial.strain -= warm.strains[n] * unit_symmetric_tensor<3>();
+            if (u != nullptr)
+              trial.strain -= warm.strains[n] * unit_symmetric_tensor<3>();
             trial.temperature = warm.temperatures[n];
             trial.warming     = warm.temperatures[n] - warm.accepted[n];
           }

@@ -25,6 +25,14 @@ namespace PeriDeal
   }
 
 
+  /** The temperature of the body changes. */
+  template <int dim>
+  bool is_warm(const BodyParameters<dim> &body)
+  {
+    return body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change);
+  }
+
+
   /** T in formulas of a solid, where the temperature has changed by this (section `Elasticity`). */
   template <int dim>
   double temperature_of(const BodyParameters<dim> &body, const double change)
