@@ -47,7 +47,7 @@ RUBBER = {"Domain/Cells": "24, 6", "Elasticity/Solver": "dynamics", "Material/De
           "Time/End time": "1", "Output/Write at": "0.5"}
 NODAL = {"Elasticity/Model": "correspondence", "Peridynamics/Horizon ratio": "2", "Peridynamics/Kernel exponent": "auto"}
 BLENDED = {**NODAL, "Models": "coupled", "Domain/Nodes": "vertices", "Coupling/Scheme": "blending", "Coupling/Zone": "1.15 - sqrt(x^2 + y^2)", "Coupling/Overlap": "1"}
-STRETCHED = {"Domain/Cells": "4, 2, 2", "Elasticity/Kinematics": "full", "Solver/Tolerance": "1e-13", "Boundary conditions/Symmetry": "", "Boundary conditions/Displacement": "left: 0, 0, 0 ; right: 0.1*t, 0.1*t, 0.05*t",
+STRETCHED = {"Domain/Cells": "4, 2, 2", "Material/User properties": "1000, 0.3, 1000, 0, 100", "Elasticity/Kinematics": "full", "Solver/Tolerance": "1e-13", "Boundary conditions/Symmetry": "", "Boundary conditions/Displacement": "left: 0, 0, 0 ; right: 0.1*t, 0.1*t, 0.05*t",
              "Time/End time": "4", "Output/Line": ""}
 SCENES = {
     "heat": [("heat/convection.prm", {**HEAT, "Time/Stepper": stepper}, tolerance)
