@@ -442,11 +442,6 @@ namespace PeriDeal
         reached.size = std::max(
           reached.size,
           undeformed_residual(op, u, memory.scratch, memory.unbalanced, t, options.remembers));
-        if (reached.size == 0.) // nothing loads it but what its law does as time goes on
-          {
-            op.residual(memory.scratch, before.state, t);
-            reached.size = memory.scratch.l2_norm();
-          }
         // Where forces are linear and loads change in proportion this is the solution.
         const double ratio = (t - reached.time) / (reached.time - before.start);
         u                  = before.state;
@@ -455,6 +450,11 @@ namespace PeriDeal
       }
     else
       reached.size = std::max(reached.size, start_statics(op, u, t, options));
+    if (reached.size == 0.) // nothing loads it but what its law does as time goes on
+      {
+        op.unbalanced(memory.scratch, before.state, t);
+        reached.size = size_of_unbalanced(op, memory.scratch);
+      }
     try
       {
         solve(u, t, may_be_left);

@@ -112,11 +112,16 @@ namespace PeriDeal
     op.distribute(u, t);
     op.multiply(image, u);
     residual -= image;
-    // What supports bear alone leaves round-off: of a body that is held all around and warms up.
+    return size_of_unbalanced(op, residual);
+  }
+
+
+  double size_of_unbalanced(const ElasticOperator &op, Vector &forces)
+  {
     constexpr double least  = 1e-3;
-    const double     of_all = op.nonlinear() ? least * residual.l2_norm() : 0.;
-    op.clear_constrained(residual);
-    return std::max(of_all, residual.l2_norm());
+    const double     of_all = op.nonlinear() ? least * forces.l2_norm() : 0.;
+    op.clear_constrained(forces);
+    return std::max(of_all, forces.l2_norm());
   }
 
 

@@ -383,19 +383,16 @@ SWELLS = HEAD + """  const double swells = 0.01 * (time[0] + *dtime);
 """
 
 
-# In plane stress; T at the end of a step, and what it has been in STATEV.
-WARMS = HEAD + """  const double T = *temp + *dtemp, nu = props[1], E = props[0] * (1. - T / 1000.) / (1. - nu * nu);
-  for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l)
-      ddsdde[k + 3 * l] = k == 2 || l == 2 ? (k == l) * 0.5 * E * (1. - nu) : k == l ? E : nu * E;
-  for (int k = 0; k < 3; ++k)
-    {
-      stress[k] = 0.;
-      for (int l = 0; l < 3; ++l)
-        stress[k] += ddsdde[k + 3 * l] * (stran[l] + dstran[l]);
-    }
-  if (*kinc > 1 && statev[0] != *temp) /* as the last step has left it */
-    stress[0] = 1e9;
+# Its modulus falls with the temperature, which has to be what the last step left.
+WARMS = HEAD + """  const double T = *temp + *dtemp;
+  for (int a = 0; a < n; ++a)
+    stress[a] = *kinc > 1 && statev[0] != *temp ? 1e9 : 0;
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b)
+      {
+        ddsdde[a + n * b] *= 1. - T / 1000.;
+        stress[a] += ddsdde[a + n * b] * (stran[b] + dstran[b]);
+      }
   statev[0] = T;
 }
 """

@@ -277,7 +277,7 @@ Models=peridynamics & Material/Young modulus=1 & Material/Poisson ratio=0.2 & Ma
 Models=coupled & Coupling/Zone=everywhere => 'Law' | 'user' | 'Models = finite elements'
 Elasticity/Solver=linear => 'Solver' | 'Law = user' | 'newton'
 Material/Fracture energy=1 => 'Law' | 'user' | 'Fracture energy'
-Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'user' | 'Temperature change'
+Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 & Elasticity/Kinematics=full & Elasticity/Plane=strain => 'Law' | 'user' | 'Temperature change'
 Elasticity/Kinematics=full => 'Kinematics' | 'Law = user' | 'Plane = strain'
 Models=coupled & Coupling/Zone=everywhere & Coupling/Scheme=blending & Elasticity/Model=correspondence & Elasticity/Kinematics=full & Elasticity/Plane=strain => 'Kinematics' | 'Models = coupled'
 Elasticity/Plane=strain & Cracks/Segments=0.2,0.5 ; 0.4,0.5 => 'Contact' | 'Law = user' | 'false'
@@ -370,7 +370,7 @@ Material/Yield stress= => 'Yield stress' | is empty
 Material/Yield stress=0 => 'Yield stress' | greater than 0
 Material/Hardening modulus=-1 => 'Hardening modulus' | -1 | 0 or more
 Material/Law=linear => 'Yield stress' | 'Law = plastic' | 'linear'
-Material/Thermal expansion=1e-5 & Elasticity/Temperature change=1 => 'Law' | 'plastic' | 'Temperature change'
+Material/Yield stress=2 - T => 'Yield stress' | depends on T | 'Temperature change'
 Material/Fracture energy=1 => 'Law' | 'Fracture energy'
 Elasticity/Solver=linear => 'Solver' | 'linear' | 'newton'
 Models=coupled & Coupling/Zone=everywhere => 'Law' | 'coupled'

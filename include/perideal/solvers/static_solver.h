@@ -92,6 +92,14 @@ namespace PeriDeal
                              const bool       remembers);
 
   /**
+   * The l2 norm of unbalanced forces on free unknowns, to which alone they are set. Where those on
+   * others are a thousand times as large it is a thousandth of all of them: what supports bear
+   * alone leaves round-off, as of a body that is held all around and warms up. Linear bodies have
+   * the norm. Collective.
+   */
+  double size_of_unbalanced(const ElasticOperator &op, Vector &forces);
+
+  /**
    * undeformed_residual(), by which residuals are measured, and the start of the iterations: the
    * prescribed displacements, and where forces are not linear the solution of small displacements
    * to three digits, since bonds that a jump at the side has turned over do not find back. @p u is

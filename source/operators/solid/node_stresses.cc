@@ -79,7 +79,9 @@ namespace PeriDeal
         const Point<dim> &p = nodes.position(i);
         const double change = changes.size() == 0 ? body.elasticity.temperature_change.value(p) :
                                                     changes.local_element(i);
-        warm.strains.push_back(body.material.thermal_expansion.value(p) * change);
+        // The linear law has what is strained out of the plane within it, as all its sums do.
+        warm.strains.push_back(kind.is_linear ? thermal_strain(body, p, change) :
+                                                body.material.thermal_expansion.value(p) * change);
         warm.temperatures.push_back(temperature_of(body, change));
       }
     if (is_first)
@@ -112,7 +114,8 @@ namespace PeriDeal
     if (!warm.temperatures.empty())
       {
         if (!warm.strains.empty()) // at the start the body is at rest
-          at.strain -= warm.strains[i] * unit_symmetric_tensor<3>();
+          for (unsigned int d = 0; d < (kind.is_linear ? dim : 3U); ++d)
+            at.strain[d][d] -= warm.strains[i];
         at.temperature = warm.temperatures[i];
         at.warming     = warm.temperatures[i] - warm.accepted[i];
       }

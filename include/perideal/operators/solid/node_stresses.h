@@ -137,7 +137,7 @@ namespace PeriDeal
     std::vector<std::uint32_t> number_of;  // in these
     struct
     {
-      std::vector<double> strains; // alpha dT; empty: the body is cold
+      std::vector<double> strains; // alpha dT, of the linear law thermal_strain(); empty: none
       std::vector<double> temperatures, accepted;
     } warm;
     std::vector<double>                      states;
