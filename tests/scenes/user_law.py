@@ -386,7 +386,7 @@ SWELLS = HEAD + """  const double swells = 0.01 * (time[0] + *dtime);
 # Its modulus falls with the temperature, which has to be what the last step left.
 WARMS = HEAD + """  const double T = *temp + *dtemp;
   for (int a = 0; a < n; ++a)
-    stress[a] = *kinc > 1 && statev[0] != *temp ? 1e9 : 0;
+    stress[a] = *kinc > 1 && fabs(statev[0] - *temp) > 1e-9 ? 1e9 : 0;
   for (int a = 0; a < n; ++a)
     for (int b = 0; b < n; ++b)
       {
@@ -409,7 +409,7 @@ Elasticity/Solver = newton
 Elasticity/Temperature change = computed
 Elasticity/Reference temperature = 20
 Initial and source/Initial value = 20
-Initial and source/Source = 300
+Initial and source/Source = if(t < 2, 300, 0)
 Time/End time = 1
 Time/Time step = 0.1
 Output/Write at = 0.5
