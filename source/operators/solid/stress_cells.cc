@@ -358,7 +358,6 @@ namespace PeriDeal
     double dissipated = 0.;
     begun             = true;
     steps.now         = t;
-    warm.accepted     = warm.temperatures;
     if (of_points.law->n_state() == 0 &&
         !of_points.law->may_fail()) // nothing to remember or dissipate
       {
@@ -376,6 +375,7 @@ namespace PeriDeal
         }
     });
     throw_faults();
+    warm.accepted = warm.temperatures;
     steps.accept(t, Utilities::MPI::max(changes ? 1U : 0U, dofs.get_communicator()) > 0);
     return Utilities::MPI::sum(dissipated, dofs.get_communicator());
   }
