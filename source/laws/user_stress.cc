@@ -118,10 +118,10 @@ namespace PeriDeal
       double                made = 0., slope = 0., temperature = 0., change = 0., fields = 0.;
     } heat;
 
-    /** Neither strain nor time goes on. */
+    /** Neither strain nor time nor temperature goes on. */
     bool rests(const Trial &trial) const
     {
-      return !(trial.step > 0.) && strains.stays;
+      return !(trial.step > 0.) && strains.stays && trial.warming == 0.;
     }
   };
 

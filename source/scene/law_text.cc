@@ -3,6 +3,7 @@
 
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/law_text.h>
+#include <perideal/scene/rules.h>
 
 namespace PeriDeal
 {
@@ -43,11 +44,15 @@ namespace PeriDeal
     std::string text = kind_text(body.material, body.elasticity.has_full_kinematics(), by_elements);
     if (text.empty())
       return text;
-    const std::string points = "at the quadrature points of elements";
+    const SolidLaw    kind      = body.material.law.kind;
+    const bool        of_bonds  = kind == SolidLaw::softening || kind == SolidLaw::formula;
+    const std::string in_points = "at the quadrature points of elements",
+                      points    = of_bonds ? "elements are linear" : in_points,
+                      remembers = relaxes_at_nodes(body) ? ", remembered at nodes" : "";
     const std::string bonds =
       body.elasticity.is_correspondence() ? "at nodes (correspondence)" :
       body.material.law.yields()          ? "of families (state-based)" :
-                                            "of bonds (" + body.elasticity.text("Model") + ")";
+                                   "of bonds (" + body.elasticity.text("Model") + ")" + remembers;
     return text + "; " +
            (model == ModelKind::finite_elements ? points :
             model == ModelKind::coupled         ? bonds + " and " + points :

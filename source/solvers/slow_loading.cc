@@ -332,6 +332,11 @@ namespace PeriDeal
   {
     take_accepted_residual(); // of a run that ended in between
     reached.size = start_statics(op, u, t, options);
+    if (reached.size == 0.) // loads there are none, a law may do something at no strain
+      {
+        op.unbalanced(memory.scratch, u, t);
+        reached.size = size_of_unbalanced(op, memory.scratch);
+      }
     before.state = u;
     solve(u, t);
     accept(op, u, t, so_far);
@@ -437,23 +442,23 @@ namespace PeriDeal
 
   void SlowLoading::find_equilibrium(Vector &u, const double t, const bool may_be_left)
   {
+    const double of_loads =
+      before.any ?
+        undeformed_residual(op, u, memory.scratch, memory.unbalanced, t, options.remembers) :
+        start_statics(op, u, t, options);
+    reached.size = std::max(reached.size, of_loads);
+    if (of_loads == 0. && (options.remembers || reached.size == 0.)) // what its law does is all
+      {
+        op.unbalanced(memory.scratch, before.state, t);
+        reached.size = std::max(reached.size, size_of_unbalanced(op, memory.scratch));
+      }
     if (before.any)
       {
-        reached.size = std::max(
-          reached.size,
-          undeformed_residual(op, u, memory.scratch, memory.unbalanced, t, options.remembers));
         // Where forces are linear and loads change in proportion this is the solution.
         const double ratio = (t - reached.time) / (reached.time - before.start);
         u                  = before.state;
         u.sadd(1. + ratio, -ratio, before.change);
         op.distribute(u, t);
-      }
-    else
-      reached.size = std::max(reached.size, start_statics(op, u, t, options));
-    if (reached.size == 0.) // nothing loads it but what its law does as time goes on
-      {
-        op.unbalanced(memory.scratch, before.state, t);
-        reached.size = size_of_unbalanced(op, memory.scratch);
       }
     try
       {

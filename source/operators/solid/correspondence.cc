@@ -274,7 +274,7 @@ namespace PeriDeal
   {
     stresses.take_temperatures(changes);
     trial.known    = false;
-    accepted.warms = changes.size() > 0;
+    accepted.take_warming(changes.size() > 0);
   }
 
 

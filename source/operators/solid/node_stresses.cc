@@ -35,7 +35,7 @@ namespace PeriDeal
     find_parameters();
     for (unsigned int i = 0; i < nodes.n_owned() && is_warm(body); ++i)
       warm.temperatures.push_back(temperature_at_start(body, nodes.position(i)));
-    warm.accepted = warm.temperatures;
+    warm.accepted.assign(warm.temperatures.size(), temperature_of(body, 0.));
     states.resize(nodes.n_owned() * law.law->n_state(), 0.);
     next = states;
     responses.resize(nodes.n_owned());
@@ -51,10 +51,11 @@ namespace PeriDeal
     number_of.clear();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const Point<dim> &p = nodes.position(i);
-        const double      T = warm.temperatures.empty() ? temperature_at_start(body, p) :
-                                                          warm.temperatures[i];
-        if (message.empty())
+        const Point<dim> &p        = nodes.position(i);
+        const double      T        = warm.temperatures.empty() ? temperature_at_start(body, p) :
+                                                                 warm.temperatures[i];
+        const bool        is_known = !body.elasticity.computes_temperature || !warm.strains.empty();
+        if (message.empty() && is_known)
           message = yield_stress_fault(body.material, p, T);
         const std::vector<double> here = law.parameters(p, T);
         if (i == 0 || !std::equal(here.begin(), here.end(), parameters.end() - n))
@@ -69,7 +70,6 @@ namespace PeriDeal
   template <int dim>
   void NodeStresses<dim>::take_temperatures(const Vector &changes)
   {
-    const bool is_first = warm.strains.empty();
     if (changes.size() == 0 && is_zero(body.elasticity.temperature_change))
       return; // it is computed, and not known yet, or there is none
     warm.strains.clear();
@@ -84,8 +84,6 @@ namespace PeriDeal
                                                 body.material.thermal_expansion.value(p) * change);
         warm.temperatures.push_back(temperature_of(body, change));
       }
-    if (is_first)
-      warm.accepted = warm.temperatures;
     if (law.depends_on_temperature)
       find_parameters();
   }
@@ -220,6 +218,12 @@ namespace PeriDeal
   {
     const unsigned int n = law.law->n_state();
     Vector             number(nodes.partitioner());
+    if (is_warm(body))
+      {
+        std::copy(warm.accepted.begin(), warm.accepted.end(), number.begin());
+        archive.exchange("accepted temperature", number, keys);
+        std::copy_n(number.begin(), warm.accepted.size(), warm.accepted.begin());
+      }
     for (unsigned int s = 0; s < n; ++s)
       {
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
@@ -228,7 +232,6 @@ namespace PeriDeal
         for (unsigned int i = 0; i < nodes.n_owned(); ++i)
           states[n * i + s] = number.local_element(i);
       }
-    warm.accepted = warm.temperatures; // which the operator has already
     steps.exchange(archive);
   }
 

@@ -46,11 +46,6 @@ namespace PeriDeal
           forces[k] = of_all[k] - forces[k];
       }
 
-      double energy(const Vector &u) const override
-      {
-        return nodal->energy(u);
-      }
-
       double energy_of(const std::vector<unsigned int> &nodes, const Vector &u) const override
       {
         return nodal->energy_of(nodes, u);
@@ -124,13 +119,6 @@ namespace PeriDeal
           sum.local_element(i) += shear_factor(i) * of_one.local_element(i);
         sum.update_ghost_values();
         sums.find_forces(forces_of_all, relaxed.begin(), sum.begin());
-      }
-
-      double energy(const Vector &u) const override
-      {
-        Vector shear(u.get_partitioner()), bulk(shear);
-        multiply(shear, bulk, u);
-        return 0.5 * (u * shear + u * bulk);
       }
 
       double energy_of(const std::vector<unsigned int> &nodes, const Vector &u) const override
@@ -259,8 +247,8 @@ namespace PeriDeal
   template <int dim>
   double RelaxingFamilies<dim>::energy(const Vector &u) const
   {
-    const Vector &s = shear_at(u);
-    return body->energy(u) - 0.5 * (u * s) + relaxing.energy(u, s, false);
+    const Vector &s = shear_at(u); // and of bulk
+    return 0.5 * (u * last.bulk) + relaxing.energy(u, s, false);
   }
 
 

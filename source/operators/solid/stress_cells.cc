@@ -305,13 +305,14 @@ namespace PeriDeal
   template <int dim>
   void StressCells<dim>::take_temperatures(const BodyParameters<dim> &body, const Vector &changes)
   {
-    const bool is_warm = changes.size() > 0 || !is_zero(body.elasticity.temperature_change);
-    if (!is_warm && !body.material.law.yields())
+    // Those of a computed temperature are at the reference until the first comes.
+    const bool warms    = is_warm(body),
+               is_known = changes.size() > 0 || !body.elasticity.computes_temperature;
+    if (!warms && !body.material.law.yields())
       return;
     const unsigned int  n_points = at.points.size(), n_parameters = of_points.law->n_parameters();
     std::vector<double> strains(n_points);
     std::string         message;
-    const bool          is_first = warm.strains.empty();
     warm.strains.clear();
     warm.temperatures.clear();
     for (const auto &cell : dofs.active_cell_iterators())
@@ -330,9 +331,9 @@ namespace PeriDeal
                   change += changes(at.nodes[a]) * at.strains.values().shape_value(a, q);
               const double T = temperature_of(body, change);
               strains[q]     = body.material.thermal_expansion.value(p) * change;
-              if (message.empty())
+              if (message.empty() && is_known)
                 message = yield_stress_fault(body.material, p, T);
-              if (is_warm)
+              if (warms)
                 warm.temperatures.push_back(T);
               if (!of_points.depends_on_temperature)
                 continue;
@@ -341,13 +342,13 @@ namespace PeriDeal
                         here.end(),
                         all_parameters.begin() + (first_of(cell) + q) * n_parameters);
             }
-          if (!is_warm)
+          if (!warms)
             continue;
           at.strains.project(strains);
           warm.strains.insert(warm.strains.end(), strains.begin(), strains.end());
         }
-    if (is_first)
-      warm.accepted = warm.temperatures;
+    if (warm.accepted.empty())
+      warm.accepted.assign(warm.temperatures.size(), temperature_of(body, 0.));
     throw_on_all_if_any(dofs.get_communicator(), message);
   }
 
@@ -387,28 +388,32 @@ namespace PeriDeal
     // Cells have keys by the one node that such an element has in each.
     DoFHandler<dim>                      cells(dofs.get_triangulation());
     const FE_DGQ<dim>                    middle(0);
-    const unsigned int                   n_values = at.points.size() * of_points.law->n_state();
     std::vector<types::global_dof_index> node(1);
     cells.distribute_dofs(middle);
     const Utilities::MPI::Partitioner layout(cells.locally_owned_dofs(), cells.get_communicator());
-    dealii::LinearAlgebra::distributed::Vector<double> values(interleaved(layout, n_values));
-    const auto                                         for_each_cell = [&](const auto &act) {
-      for (const auto &cell : cells.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            cell->get_dof_indices(node);
-            act(values.begin() + n_values * layout.global_to_local(node[0]),
-                states.begin() + first[cell->active_cell_index()] * of_points.law->n_state());
-          }
+    const auto exchange = [&](const std::string &name, const unsigned int n, auto &numbers) {
+      const unsigned int                                 n_values = at.points.size() * n;
+      dealii::LinearAlgebra::distributed::Vector<double> values(interleaved(layout, n_values));
+      const auto                                         for_each_cell = [&](const auto &act) {
+        for (const auto &cell : cells.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              cell->get_dof_indices(node);
+              act(values.begin() + n_values * layout.global_to_local(node[0]),
+                  numbers.begin() + first[cell->active_cell_index()] * n);
+            }
+      };
+      for_each_cell([&](auto value, auto number) { std::copy_n(number, n_values, value); });
+      archive.exchange(name, values, node_keys(cells));
+      for_each_cell([&](auto value, auto number) { std::copy_n(value, n_values, number); });
     };
     archive.exchange("begun", begun);
     steps.exchange(archive);
-    warm.accepted = warm.temperatures; // which the operator has already
-    if (n_values == 0)
-      return;
-    for_each_cell([&](auto value, auto state) { std::copy_n(state, n_values, value); });
-    archive.exchange("states of points", values, node_keys(cells));
-    for_each_cell([&](auto value, auto state) { std::copy_n(value, n_values, state); });
+    const unsigned int warms = warm.accepted.empty() ? 0 : 1;
+    if (Utilities::MPI::max(warms, cells.get_communicator()) > 0)
+      exchange("accepted temperatures", 1, warm.accepted);
+    if (of_points.law->n_state() > 0)
+      exchange("states of points", of_points.law->n_state(), states);
   }
 
 

@@ -14,6 +14,7 @@
 #include <perideal/scene/user_properties.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace PeriDeal
@@ -28,8 +29,10 @@ namespace PeriDeal
       const Material &material = body.material;
       auto law = std::make_unique<const J2Plasticity>(stress_state_of(dim, body.elasticity.plane));
       const auto parameters = [&material, &law = *law](const Point<dim> &p, const double T) {
+        // At a temperature that the body never has it need not yield (yield_stress_fault()).
+        const double yields = material.law.yield_stress->value(p, T);
         return law.parameters(material.moduli(p),
-                              material.law.yield_stress->value(p, T),
+                              yields > 0. ? yields : std::numeric_limits<double>::infinity(),
                               material.law.hardening.value(p, T));
       };
       return {std::move(law),

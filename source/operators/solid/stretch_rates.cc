@@ -54,6 +54,9 @@ namespace PeriDeal
     std::copy(u.begin(), u.begin() + u.locally_owned_size(), now.displacement.begin());
     now.displacement.update_ghost_values();
     find_images(now);
+    if (!begun) // no step has led to it that is known
+      before.displacement = now.displacement;
+    begun = true;
   }
 
 
@@ -93,6 +96,7 @@ namespace PeriDeal
   template <int dim>
   void StretchRates<dim>::exchange(Archive &archive, const NodeKeys &keys)
   {
+    archive.exchange("rates have begun", begun);
     for (const auto &[name, state] :
          {std::make_pair(std::string("before"), &before), std::make_pair(std::string("now"), &now)})
       {

@@ -70,12 +70,15 @@ namespace PeriDeal
       {
         const Point<dim> &p = nodes.position(i);
         const double T = temperatures.empty() ? temperature_at_start(of_scene, p) : temperatures[i];
-        if (message.empty())
+        const bool   is_known = !of_scene.elasticity.computes_temperature || !temperatures.empty();
+        if (message.empty() && is_known)
           message = yield_stress_fault(material, p, T);
+        // At a temperature that the body never has it need not yield.
+        const double yields = material.law.yield_stress->value(p, T);
         materials.emplace_back(material.moduli(p),
                                dim,
                                of_scene.elasticity.plane,
-                               material.law.yield_stress->value(p, T),
+                               yields > 0. ? yields : std::numeric_limits<double>::infinity(),
                                material.law.hardening.value(p, T));
       }
     throw_on_all_if_any(nodes.communicator(), message);
@@ -87,7 +90,7 @@ namespace PeriDeal
   {
     const Nodes<dim> &nodes = families.nodes();
     trial.known             = false;
-    accepted.warms          = changes.size() > 0;
+    accepted.take_warming(changes.size() > 0);
     expansions.clear();
     if (changes.size() == 0 && is_zero(of_scene.elasticity.temperature_change))
       return;
@@ -109,24 +112,25 @@ namespace PeriDeal
   namespace
   {
     /**
-     * Take off stretches of a node's bonds what the temperature makes of them, and of the sum of
-     * S s. @param origin of a node on the other side
+     * Take off stretches of a node's bonds what the temperature makes of them. Returns the sum of S
+     * times that. @param origin of a node on the other side
      */
     template <int dim, typename Origin>
-    void take_off(const BondRows<dim>       &rows,
-                  const Span                &span,
-                  const std::vector<double> &expansions,
-                  const unsigned int         i,
-                  const Origin              &origin,
-                  double                    *stretches,
-                  double                    &sum)
+    double take_off(const BondRows<dim>       &rows,
+                    const Span                &span,
+                    const std::vector<double> &expansions,
+                    const unsigned int         i,
+                    const Origin              &origin,
+                    double                    *stretches)
     {
+      double sum = 0.;
       for (std::size_t k = span.begin; k < span.end; ++k)
         {
           const double thermal = 0.5 * (expansions[i] + expansions[origin(rows.neighbors[k])]);
           stretches[k] -= thermal;
-          sum -= rows.squares[k] * thermal;
+          sum += rows.squares[k] * thermal;
         }
+      return sum;
     }
 
 
@@ -195,26 +199,29 @@ namespace PeriDeal
         own,
         [&](const unsigned int j) { return images->value(ends.image(j)); },
         beyond);
+      double thermal = 0.;
       if (!expansions.empty())
         {
           const auto origin = [&](const unsigned int j) { return ends.origin(j); };
-          take_off(bonds.body, inside, expansions, i, origin, body, sum);
-          take_off(bonds.beyond, outside, expansions, i, origin, beyond, sum);
+          thermal           = take_off(bonds.body, inside, expansions, i, origin, body) +
+                    take_off(bonds.beyond, outside, expansions, i, origin, beyond);
+          sum -= thermal;
         }
-      const double thermal = expansions.empty() ? 0. : expansions[i];
       const double q = laws.weighted.local_element(i), volume = nodes.volume(i),
                    alpha = laws.stiffness(i), mean_stretch = sum / (volume * q),
                    squares =
                      sum_squares(bonds.body, inside.begin, inside.end, mean_stretch, body) +
                      sum_squares(bonds.beyond, outside.begin, outside.end, mean_stretch, beyond);
       OrdinaryPlasticity::Answer &answer = trial.answers[i];
-      answer =
-        materials[i].answer(dim * mean_stretch, 0.5 * alpha / volume * squares, states[i], thermal);
-      double *const numbers = trial.numbers.begin() + n_numbers * i;
-      numbers[stiffness]    = alpha * answer.ratio;
-      numbers[tension]      = dim * answer.mean / q - numbers[stiffness] * mean_stretch;
-      numbers[dilatation]   = mean_stretch;
-      numbers[lost]         = answer.yields() ? 1. - answer.ratio : 0.;
+      answer                             = materials[i].answer(dim * mean_stretch,
+                                   0.5 * alpha / volume * squares,
+                                   states[i],
+                                   thermal / (volume * q));
+      double *const numbers              = trial.numbers.begin() + n_numbers * i;
+      numbers[stiffness]                 = alpha * answer.ratio;
+      numbers[tension]    = dim * answer.mean / q - numbers[stiffness] * mean_stretch;
+      numbers[dilatation] = mean_stretch;
+      numbers[lost]       = answer.yields() ? 1. - answer.ratio : 0.;
     });
     u.set_ghost_state(false);
     trial.numbers.update_ghost_values();

@@ -26,10 +26,7 @@ namespace PeriDeal
     /** Leave with fictitious nodes the forces of K_s relaxed + K_b u. Collective. */
     virtual void pull_images(const Vector &u, const Vector &relaxed) const = 0;
 
-    /** What is stored at u, if nothing relaxes. Collective. */
-    virtual double energy(const Vector &u) const = 0;
-
-    /** The same of these owned nodes alone. Collective. */
+    /** What these owned nodes have of what is stored at u, if nothing relaxes. Collective. */
     virtual double energy_of(const std::vector<unsigned int> &nodes, const Vector &u) const = 0;
 
     /** What shear stores in it. Collective. */

@@ -44,17 +44,25 @@ namespace PeriDeal
       sums[2]                 = n_yield;
       sums                    = dealii::Utilities::MPI::sum(sums, communicator);
       yields                  = sums[2] > 0.;
-      const double work       = begun ? sums[0] - (sums[1] - stored) : 0.;
-      const double dissipated = !yields ? 0. : warms ? by_law : work;
+      const double work       = sums[0] - (sums[1] - stored);
+      const double dissipated = !yields || !begun ? 0. : warms ? by_law : work;
       warms                   = false;
       stored                  = sums[1];
       begun                   = true;
       return dissipated;
     }
 
+    /** Temperatures have been computed. Those after loading are those of the loaded state. */
+    void take_warming(const bool computed)
+    {
+      warms  = computed && !loaded;
+      loaded = false;
+    }
+
     /** Collective. */
     void exchange(Archive &archive, const NodeKeys &keys)
     {
+      loaded = archive.loads();
       archive.exchange("accepted displacement", displacement, keys);
       archive.exchange("accepted forces", forces, keys);
       archive.exchange("stored", stored);
@@ -63,6 +71,7 @@ namespace PeriDeal
 
     bool   begun  = false;
     bool   warms  = false; // temperatures have changed since the last step
+    bool   loaded = false; // no temperatures have come since then
     double stored = 0.;
     Vector displacement, forces; // to be given their layout
   };

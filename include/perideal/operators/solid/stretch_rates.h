@@ -16,8 +16,8 @@ namespace PeriDeal
    *
    *     limit <- f(rate) limit,  rate = max(0, (s - s_before)/(t - t_before)),
    *
-   * of a formula f >= 1 with f(0) = 1 (`Rate factor`), so that the limit without it is a bound from
-   * below of all limits.
+   * and 0 at the first look; of a formula f >= 1 with f(0) = 1 (`Rate factor`), so that the limit
+   * without it is a bound from below of all limits.
    */
   template <int dim>
   class StretchRates
@@ -66,5 +66,6 @@ namespace PeriDeal
     const Expression    &of_rate;
     const bool           is_full;
     State                now, before;
+    bool                 begun = false;
   };
 } // namespace PeriDeal
