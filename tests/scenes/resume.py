@@ -50,7 +50,7 @@ BLENDED = {**NODAL, "Models": "coupled", "Domain/Nodes": "vertices", "Coupling/S
 STRETCHED = {"Domain/Cells": "4, 2, 2", "Material/User properties": "1000, 0.3, 1000, 0, 100", "Elasticity/Kinematics": "full", "Solver/Tolerance": "1e-13", "Boundary conditions/Symmetry": "", "Boundary conditions/Displacement": "left: 0, 0, 0 ; right: 0.1*t, 0.1*t, 0.05*t",
              "Time/End time": "4", "Output/Line": ""}
 # Bodies that yield: in a spot that warms up; in a temperature that stays, by what pulls at them.
-HEATED = {"Domain/Cells": "8, 8", "Initial and source/Source": "if(t < 5, 1e9*exp(-(x^2 + y^2)/0.02^2), 0)", "Time/End time": "20", "Time/Time step": "2", "Output/Write at": "6, 12",
+HEATED = {"Domain/Cells": "8, 8", "Initial and source/Source": "if(t < 5, 7e8*exp(-(x^2 + y^2)/0.02^2), 0)", "Time/End time": "20", "Time/Time step": "2", "Output/Write at": "6, 12",
           "Solver/Tolerance": "1e-13"}
 PULLED = {"Domain/Cells": "8, 8", "Initial and source/Source": "0", "Boundary conditions/Convection": "", "Boundary conditions/Dirichlet": "right: 320 ; top: 20",
           "Boundary conditions/Displacement": "right: 2e-4*t, free", "Time/Steady": "true", "Time/End time": "1", "Time/Time step": "0.1", "Output/Write at": "0.5", "Solver/Tolerance": "1e-13"}
