@@ -76,9 +76,8 @@ namespace PeriDeal
     warm.temperatures.clear();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const Point<dim> &p = nodes.position(i);
-        const double change = changes.size() == 0 ? body.elasticity.temperature_change.value(p) :
-                                                    changes.local_element(i);
+        const Point<dim> &p      = nodes.position(i);
+        const double      change = temperature_change_of(body, p, changes, i);
         // The linear law has what is strained out of the plane within it, as all its sums do.
         warm.strains.push_back(kind.is_linear ? thermal_strain(body, p, change) :
                                                 body.material.thermal_expansion.value(p) * change);

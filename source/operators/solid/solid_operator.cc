@@ -349,12 +349,10 @@ namespace PeriDeal
   template <int dim>
   double SolidOperator<dim>::thermal_strain_at(const unsigned int node) const
   {
-    const Vector     &at_nodes = this->temperature_change();
-    const Point<dim> &p        = position(node);
+    const Point<dim> &p = position(node);
     return thermal_strain(body,
                           p,
-                          at_nodes.size() > 0 ? at_nodes.local_element(node) :
-                                                body.elasticity.temperature_change.value(p));
+                          temperature_change_of(body, p, this->temperature_change(), node));
   }
 
 

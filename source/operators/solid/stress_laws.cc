@@ -29,10 +29,8 @@ namespace PeriDeal
       const Material &material = body.material;
       auto law = std::make_unique<const J2Plasticity>(stress_state_of(dim, body.elasticity.plane));
       const auto parameters = [&material, &law = *law](const Point<dim> &p, const double T) {
-        // At a temperature that the body never has it need not yield (yield_stress_fault()).
-        const double yields = material.law.yield_stress->value(p, T);
         return law.parameters(material.moduli(p),
-                              yields > 0. ? yields : std::numeric_limits<double>::infinity(),
+                              yield_stress_of(material, p, T),
                               material.law.hardening.value(p, T));
       };
       return {std::move(law),
@@ -111,6 +109,14 @@ namespace PeriDeal
 
 
   template <int dim>
+  double yield_stress_of(const Material &material, const Point<dim> &p, const double temperature)
+  {
+    const double yields = material.law.yield_stress->value(p, temperature);
+    return yields > 0. ? yields : std::numeric_limits<double>::max();
+  }
+
+
+  template <int dim>
   std::string yield_stress_fault(const Material   &material,
                                  const Point<dim> &p,
                                  const double      temperature)
@@ -139,5 +145,6 @@ namespace PeriDeal
 
   PERIDEAL_INSTANTIATE_FUNCTION(stress_law_of);
   PERIDEAL_INSTANTIATE_FUNCTION(linear_stress_law);
+  PERIDEAL_INSTANTIATE_FUNCTION(yield_stress_of);
   PERIDEAL_INSTANTIATE_FUNCTION(yield_stress_fault);
 } // namespace PeriDeal

@@ -73,12 +73,10 @@ namespace PeriDeal
         const bool   is_known = !of_scene.elasticity.computes_temperature || !temperatures.empty();
         if (message.empty() && is_known)
           message = yield_stress_fault(material, p, T);
-        // At a temperature that the body never has it need not yield.
-        const double yields = material.law.yield_stress->value(p, T);
         materials.emplace_back(material.moduli(p),
                                dim,
                                of_scene.elasticity.plane,
-                               yields > 0. ? yields : std::numeric_limits<double>::infinity(),
+                               yield_stress_of(material, p, T),
                                material.law.hardening.value(p, T));
       }
     throw_on_all_if_any(nodes.communicator(), message);
@@ -98,9 +96,7 @@ namespace PeriDeal
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
         const Point<dim> &p      = nodes.position(i);
-        const double      change = changes.size() == 0 ?
-                                     of_scene.elasticity.temperature_change.value(p) :
-                                     changes.local_element(i);
+        const double      change = temperature_change_of(of_scene, p, changes, i);
         expansions.push_back(of_scene.material.thermal_expansion.value(p) * change);
         temperatures.push_back(temperature_of(of_scene, change));
       }
@@ -212,16 +208,14 @@ namespace PeriDeal
                    squares =
                      sum_squares(bonds.body, inside.begin, inside.end, mean_stretch, body) +
                      sum_squares(bonds.beyond, outside.begin, outside.end, mean_stretch, beyond);
+      const double own_sum = 0.5 * alpha / volume * squares, out_of_plane = thermal / (volume * q);
       OrdinaryPlasticity::Answer &answer = trial.answers[i];
-      answer                             = materials[i].answer(dim * mean_stretch,
-                                   0.5 * alpha / volume * squares,
-                                   states[i],
-                                   thermal / (volume * q));
-      double *const numbers              = trial.numbers.begin() + n_numbers * i;
-      numbers[stiffness]                 = alpha * answer.ratio;
-      numbers[tension]    = dim * answer.mean / q - numbers[stiffness] * mean_stretch;
-      numbers[dilatation] = mean_stretch;
-      numbers[lost]       = answer.yields() ? 1. - answer.ratio : 0.;
+      answer = materials[i].answer(dim * mean_stretch, own_sum, states[i], out_of_plane);
+      double *const numbers = trial.numbers.begin() + n_numbers * i;
+      numbers[stiffness]    = alpha * answer.ratio;
+      numbers[tension]      = dim * answer.mean / q - numbers[stiffness] * mean_stretch;
+      numbers[dilatation]   = mean_stretch;
+      numbers[lost]         = answer.yields() ? 1. - answer.ratio : 0.;
     });
     u.set_ghost_state(false);
     trial.numbers.update_ghost_values();

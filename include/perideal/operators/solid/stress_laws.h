@@ -45,6 +45,15 @@ namespace PeriDeal
   PlacedStressLaw<dim> stress_law_of(const BodyParameters<dim> &body);
 
   /**
+   * The yield stress of a place at a temperature; where it is none (yield_stress_fault()), as may
+   * be at temperatures that the body never has, the largest number.
+   */
+  template <int dim>
+  double yield_stress_of(const Material           &material,
+                         const dealii::Point<dim> &p,
+                         const double              temperature);
+
+  /**
    * What is wrong with the yield stress and hardening modulus of a place at a temperature; empty:
    * nothing, or the body does not yield.
    */

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <perideal/base/types.h>
 #include <perideal/laws/elasticity.h>
 #include <perideal/scene/body_parameters.h>
 
@@ -30,6 +31,18 @@ namespace PeriDeal
   bool is_warm(const BodyParameters<dim> &body)
   {
     return body.elasticity.computes_temperature || !is_zero(body.elasticity.temperature_change);
+  }
+
+
+  /** By how much the temperature of a node has changed: as computed, or by the scene's formula. */
+  template <int dim>
+  double temperature_change_of(const BodyParameters<dim> &body,
+                               const dealii::Point<dim>  &p,
+                               const Vector              &computed,
+                               const unsigned int         node)
+  {
+    return computed.size() > 0 ? computed.local_element(node) :
+                                 body.elasticity.temperature_change.value(p);
   }
 
 
