@@ -442,6 +442,8 @@ namespace PeriDeal
     const std::string file = claim(name);
     if (file.empty())
       return;
+    std::error_code ignored; // what cannot be made shows in the next line
+    fs::create_directories(fs::path(file).parent_path(), ignored);
     if (const int problem = replace_file(file, text); problem != 0)
       keep_failure(name, problem);
   }
