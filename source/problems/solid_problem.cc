@@ -121,7 +121,8 @@ namespace PeriDeal
     if (heat == nullptr)
       return;
     Timings::Scope scope(this->timings, "thermal loads");
-    op().set_temperature_change(computed_temperature_change(*this));
+    with_formulas(this->dofs().get_communicator(),
+                  [&] { op().set_temperature_change(computed_temperature_change(*this)); });
   }
 
 
@@ -706,7 +707,7 @@ namespace PeriDeal
                             cause_in_contrast<dim>(
                               this->dofs().get_triangulation(),
                               "The Young modulus",
-                              [&](const Point<dim> &p) { return scene.material.moduli(p).young(); },
+                              [&](const Point<dim> &p) { return scene.moduli(p).young(); },
                               trip.monitor);
   }
 
