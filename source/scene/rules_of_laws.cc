@@ -155,8 +155,9 @@ namespace PeriDeal
         coupled && body.moduli_change(),
         "and 'Temperature change' (section 'Elasticity') is 'computed', but in 'Models = coupled' moduli are those of a temperature that is given. Use 'finite elements' or 'peridynamics', or a formula as 'Temperature change'.");
       refuse(
-        body.moduli_change() && material.fracture_energy.has_value(),
-        "and 'Temperature change' (section 'Elasticity') is 'computed', but the stretch that follows from 'Fracture energy' is that of moduli that stay. Give 'Critical stretch', which may depend on T, too.");
+        body.moduli_change() &&
+          (material.fracture_energy.has_value() || !material.law.interfaces.empty()),
+        "and 'Temperature change' (section 'Elasticity') is 'computed', but the stretch that follows from 'Fracture energy' or 'Interfaces' is that of moduli that stay. Give 'Critical stretch', which may depend on T, too.");
     }
 
 

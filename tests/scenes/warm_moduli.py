@@ -208,6 +208,7 @@ def mistakes():
         ({"Material/Law": "viscoelastic", "Material/Relaxation": "0.5, 1", "Elasticity/Plane": "strain", "Models": "peridynamics"}, ("depends on T", "viscoelastic", "linear", "plastic")),
         ({**WARMING, "Models": "coupled"}, ("depends on T", "coupled")),
         ({**WARMING, "Models": "peridynamics", "Material/Fracture energy": "1"}, ("depends on T", "Fracture energy", "Critical stretch")),
+        ({**WARMING, "Models": "peridynamics", "Material/Critical stretch": "1", "Material/Phases/Regions": "a: x - 1", "Material/Phases/Young modulus": "a: 1000", "Material/Interfaces": "a/elsewhere: fracture energy 1"}, ("depends on T", "Interfaces", "Critical stretch")),
     )
     for settings, words in cases:
         check_message(run_scene(HOT, settings, expect_error=True), *words, what=str(settings))
