@@ -574,8 +574,7 @@ namespace PeriDeal
           }
         else if (dimension + 1 == dim)
           mesh.sides.push_back(element);
-        else if (dimension == 0 &&
-                 (head.is_old || !head.has_entities)) // else they are known with their nodes
+        else if (dimension == 0)
           mesh.places.push_back(element);
       }
 
