@@ -63,7 +63,7 @@ LONGER = {
     "source/scene/domain.cc": [79],
     "source/scene/hole_rims.cc": [78],
     "source/solvers/implicit_stepper.cc": [64],
-    "applications/perideal.cc": [63],
+    "applications/perideal.cc": [62],
 }
 
 

@@ -44,7 +44,8 @@ python3-h5py: HDF5 files in Python"
 for_tests="\
 libgtest-dev: GoogleTest, unit tests
 libbenchmark-dev: Google Benchmark, speed measurements
-gfortran: Fortran, laws of users"
+gfortran: Fortran, laws of users
+python3-meshio: mesh files of many programs"
 useful="\
 ccache: keeps compiled files, so that the next build is quick
 libjs-chart.js: charts in the page of a study whose points tell their names"

@@ -10,6 +10,7 @@
 #include <perideal/output/field_writer.h>
 #include <perideal/problems/problem_factory.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/msh_file.h>
 #include <perideal/simulation/estimate.h>
 #include <perideal/simulation/simulation.h>
 #include <perideal/study/model_choice.h>
@@ -24,6 +25,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "mesh_command.h"
 #include "serve_command.h"
 #include "study_command.h"
 
@@ -43,6 +45,20 @@ namespace
     for (const std::string &note : scene.domain.notes)
       progress.note(note);
     progress.line("The entries of the scene are valid. Nothing was computed.");
+  }
+
+
+  /** What the mesh of a scene has, if it is from a file. Collective. */
+  template <int dim>
+  void print_mesh(const Scene<dim> &scene, const MPI_Comm communicator, const bool quiet)
+  {
+    const std::string &file = scene.domain.files.mesh;
+    if (quiet || file.empty() || dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
+      return;
+    const Progress progress(communicator, quiet);
+    for (const std::string &line :
+         describe_msh(*read_msh(file, scene.domain.files.folder, dim), file))
+      progress.line(line);
   }
 
 
@@ -73,6 +89,7 @@ namespace
           std::cout << scene_facts(scene);
         return;
       }
+    print_mesh(scene, communicator, quiet);
     if (scene.general.automatic)
       return describe_choice(scene, text, communicator, quiet);
     if (action == Action::estimate || is_large(scene, communicator))
@@ -109,7 +126,17 @@ namespace
     bool quiet = false, estimate = false, facts = false, resume = false, overwrite = false;
 
     StudyRequest study;
+    MeshRequest  mesh;
   };
+
+
+  void describe_serve(CLI::App &app)
+  {
+    app.add_subcommand(
+      "serve",
+      "Execute commands that lines of standard input give as JSON, {\"arguments\": [\"run\", \"scene.prm\"]}, and answer each "
+      "with a line, {\"status\": 0, \"message\": \"\"}: many runs for one start (doc/python.md)");
+  }
 
 
   void describe_commands(CLI::App &app, Request &request)
@@ -121,6 +148,7 @@ namespace
       "  perideal run prm/quick_start.prm\n"
       "  perideal run prm/quick_start.prm -s \"Domain/Cells=120, 120\" -s \"Time/Stepper=rkc2\"\n"
       "  mpirun -np 4 perideal run prm/quick_start.prm\n"
+      "  perideal mesh part.inp part.msh\n"
       "  perideal study prm/studies/delta_convergence.json\n"
       "  perideal study prm/quick_start.prm --vary \"Domain/Cells=30, 30 | 60, 60\" --vary \"Peridynamics/Horizon ratio=2 | 3\"\n"
       "  perideal parameters \"Horizon ratio\"\n"
@@ -164,10 +192,8 @@ namespace
                       request.question,
                       "answer a question about the first model, for programs (doc/python.md)");
     describe_study(app, request.study);
-    app.add_subcommand(
-      "serve",
-      "Execute commands that lines of standard input give as JSON, {\"arguments\": [\"run\", \"scene.prm\"]}, and answer each "
-      "with a line, {\"status\": 0, \"message\": \"\"}: many runs for one start (doc/python.md)");
+    describe_mesh(app, request.mesh);
+    describe_serve(app);
     CLI::App *parameters = app.add_subcommand(
       "parameters",
       "Print every entry of a scene file with type, default, unit and explanation, or explain one entry or section");
@@ -183,8 +209,9 @@ namespace
   /** A word that is no command, or no command at all. Throws UserError. */
   void require_command(const int argc, char **argv)
   {
-    const std::vector<std::string> commands = {"run", "check", "study", "parameters", "serve"};
-    const std::string              help =
+    const std::vector<std::string> commands =
+      {"run", "check", "study", "mesh", "parameters", "serve"};
+    const std::string help =
       " Commands: " + join_names(commands) + ". `perideal --help` explains them.";
     AssertThrow(argc > 1, UserError("A command is missing." + help));
     const std::string word = argv[1];
@@ -246,6 +273,8 @@ namespace
       }
     else if (app.got_subcommand("study"))
       compute_study(request.study);
+    else if (app.got_subcommand("mesh"))
+      convert_mesh(request.mesh);
     else if (!request.question.empty())
       {
         const std::string answer =

@@ -2,12 +2,10 @@
 // Copyright (C) 2026 the PeriDeal authors
 
 #include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
 #include <perideal/base/instantiate.h>
-#include <perideal/base/text_file.h>
 #include <perideal/base/user_error.h>
 #include <perideal/mesh/fitted_plate.h>
 #include <perideal/mesh/given_mesh.h>
@@ -19,6 +17,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace PeriDeal
@@ -99,25 +98,110 @@ namespace PeriDeal
     }
 
 
-    /** The text of a mesh file, once it is known that deal.II can read it. Collective. */
-    template <int dim>
-    std::string checked_mesh_file(const std::string &file_name,
-                                  const std::string &scene_folder,
-                                  const MPI_Comm     communicator)
+    /** Numbers that the first process has, to all. Collective. */
+    template <typename Number>
+    void share(std::vector<Number> &numbers, const MPI_Comm communicator)
     {
-      std::string text, message;
+      std::size_t n = Utilities::MPI::broadcast(communicator, numbers.size());
+      numbers.resize(n);
+      constexpr std::size_t most = 1u << 30; // bytes at once
+      for (std::size_t done = 0; done < n; done += most / sizeof(Number))
+        MPI_Bcast(numbers.data() + done,
+                  static_cast<int>(std::min(n - done, most / sizeof(Number)) * sizeof(Number)),
+                  MPI_BYTE,
+                  0,
+                  communicator);
+    }
+
+
+    /** Nodes of the cells and sides of a mesh file, behind the number of their group. */
+    std::vector<unsigned int> listed(const std::vector<MshElement> &elements)
+    {
+      std::vector<unsigned int> list;
+      for (const MshElement &element : elements)
+        {
+          list.push_back(element.id);
+          list.insert(list.end(), element.nodes.begin(), element.nodes.begin() + element.n);
+        }
+      return list;
+    }
+
+
+    /** Points, cells and sides of a mesh file, which the first process reads. Collective. */
+    template <int dim>
+    std::tuple<std::vector<double>, std::vector<unsigned int>, std::vector<unsigned int>>
+    lists_of_file(const std::string &file_name,
+                  const std::string &scene_folder,
+                  const MPI_Comm     communicator)
+    {
+      std::vector<double>       points;
+      std::vector<unsigned int> cells, sides;
+      std::string               message;
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         try
           {
-            text = text_of_msh(read_msh(file_name, scene_folder, dim), dim);
+            const auto mesh = read_msh(file_name, scene_folder, dim);
+            for (const auto &p : mesh->points)
+              points.insert(points.end(), p.begin(), p.begin() + dim);
+            cells = listed(mesh->cells);
+            sides = listed(mesh->sides);
           }
         catch (const UserError &error)
           {
             message = error.message();
           }
       throw_on_all_if_any(communicator, message);
-      share_text(text, communicator);
-      return text;
+      share(points, communicator);
+      share(cells, communicator);
+      share(sides, communicator);
+      return {std::move(points), std::move(cells), std::move(sides)};
+    }
+
+
+    template <int dim>
+    using Corners = std::array<unsigned int, GeometryInfo<dim>::vertices_per_face>;
+
+    /** Faces by their corners, and which of them are at the boundary: with the numbers of sides. */
+    template <int dim>
+    std::map<typename GivenMesh<dim>::FaceKey, types::boundary_id> sides_of_cells(
+      const std::vector<CellData<dim>> &cells,
+      const std::vector<unsigned int>  &named)
+    {
+      using Key                                   = typename GivenMesh<dim>::FaceKey;
+      constexpr auto                            n = GeometryInfo<dim>::vertices_per_face;
+      std::vector<std::pair<Corners<dim>, Key>> faces;
+      faces.reserve(cells.size() * GeometryInfo<dim>::faces_per_cell);
+      for (unsigned int c = 0; c < cells.size(); ++c)
+        for (unsigned int f = 0; f < GeometryInfo<dim>::faces_per_cell; ++f)
+          {
+            Corners<dim> corners;
+            for (unsigned int v = 0; v < n; ++v)
+              corners[v] = cells[c].vertices[GeometryInfo<dim>::face_to_cell_vertices(f, v)];
+            std::sort(corners.begin(), corners.end());
+            faces.emplace_back(corners, Key(c, f));
+          }
+      std::sort(faces.begin(), faces.end());
+      std::map<Corners<dim>, unsigned int> ids;
+      for (std::size_t s = 0; s < named.size(); s += n + 1)
+        {
+          Corners<dim> corners;
+          std::copy_n(named.begin() + s + 1, n, corners.begin());
+          std::sort(corners.begin(), corners.end());
+          ids[corners] = named[s];
+        }
+      std::map<Key, types::boundary_id> sides;
+      for (std::size_t k = 0; k < faces.size(); ++k)
+        {
+          if (k + 1 < faces.size() && faces[k].first == faces[k + 1].first)
+            {
+              ++k;
+              continue;
+            }
+          const auto id          = ids.find(faces[k].first);
+          const auto otherwise   = dim == 1 ? faces[k].second.second : 0;
+          sides[faces[k].second] = id != ids.end() ? id->second : otherwise;
+        }
+      return sides;
     }
 
 
@@ -126,23 +210,30 @@ namespace PeriDeal
                                 const std::string &scene_folder,
                                 const MPI_Comm     communicator)
     {
-      std::istringstream file(checked_mesh_file<dim>(file_name, scene_folder, communicator));
-      Triangulation<dim> mesh;
-      try
+      constexpr unsigned int n           = GeometryInfo<dim>::vertices_per_cell;
+      constexpr unsigned int in_order[8] = {0, 1, 3, 2, 4, 5, 7, 6}; // of Gmsh's corners
+      const auto [points, cells, sides] = lists_of_file<dim>(file_name, scene_folder, communicator);
+      GivenMesh<dim> given;
+      for (std::size_t i = 0; i < points.size(); i += dim)
         {
-          GridIn<dim> reader(mesh);
-          reader.read_msh(file);
+          Point<dim> p;
+          std::copy_n(points.begin() + i, dim, p.begin_raw());
+          given.coarse.vertices.push_back(p);
         }
-      catch (const std::exception &)
+      for (std::size_t c = 0; c < cells.size(); c += n + 1)
         {
-          AssertThrow(false,
-                      UserError("'Mesh file' in section 'Domain': '" + file_name +
-                                "' is not a mesh of dimension " + std::to_string(dim) +
-                                " that deal.II can use, or it is broken."));
+          CellData<dim> cell;
+          cell.material_id = cells[c];
+          for (unsigned int v = 0; v < n; ++v)
+            cell.vertices[v] = cells[c + 1 + in_order[v]];
+          given.coarse.cells.push_back(cell);
         }
-      AssertThrow(mesh.n_active_cells() > 0 && mesh.all_reference_cells_are_hyper_cube(),
-                  ExcInternalError());
-      return described(mesh);
+      if constexpr (dim > 1)
+        GridTools::consistently_order_cells(given.coarse.cells);
+      given.sides = sides_of_cells<dim>(given.coarse.cells, sides);
+      SubCellData none;
+      GridTools::delete_unused_vertices(given.coarse.vertices, given.coarse.cells, none);
+      return given;
     }
 
 

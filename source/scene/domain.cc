@@ -144,8 +144,8 @@ namespace PeriDeal
     declare(files.arguments, "Generator arguments", "") =
       "Its arguments as deal.II's `generate_from_name_and_arguments` reads them: separated by `:`, coordinates of a point by `,`.";
     declare(files.mesh, "Mesh file", "") =
-      "Gmsh file (.msh) of quadrilaterals or hexahedra, relative to the working directory or else to the "
-      "folder of the scene file. Its boundary ids name the sides; give `Horizon` as a length.";
+      "The mesh, relative to the working directory or else to the folder of the scene file: of Gmsh (.msh), and by the Python package of Abaqus (.inp), Exodus (.e), "
+      "UNV (.unv) and what meshio reads. Triangles, tetrahedra and wedges are divided. Its groups and sets name sides and regions, which `perideal check` tells; give `Horizon` as a length.";
   }
 
 

@@ -3,8 +3,14 @@
 
 // What a mesh file gives names to.
 
+#include <deal.II/base/mpi.h>
+
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/lists.h>
+#include <perideal/scene/msh_file.h>
+
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <array>
@@ -262,6 +268,22 @@ namespace PeriDeal
   } // namespace
 
 
+  namespace
+  {
+    /** What was made of the file, which has been read. Collective. */
+    template <int dim>
+    void add_notes_of_mesh(Domain<dim> &domain)
+    {
+      const auto              &files = domain.files;
+      std::vector<std::string> notes;
+      if (Utilities::MPI::this_mpi_process(files.communicator) == 0)
+        notes = read_msh(files.mesh, files.folder, dim)->notes;
+      notes = Utilities::MPI::broadcast(files.communicator, notes);
+      domain.notes.insert(domain.notes.end(), notes.begin(), notes.end());
+    }
+  } // namespace
+
+
   template <int dim>
   MeshGroups take_groups_of_mesh(Scene<dim> &scene)
   {
@@ -274,11 +296,12 @@ namespace PeriDeal
       conditions.physical_names = sides_of_plate(dim);
     if (domain.files.mesh.empty())
       return groups;
-    groups                    = read_mesh_groups(domain.files.mesh,
+    groups = read_mesh_groups(domain.files.mesh,
                               domain.files.folder,
                               dim,
                               !scene.cracks.text("Interfaces").empty(),
                               domain.files.communicator);
+    add_notes_of_mesh(scene.domain);
     conditions.physical_names = groups.sides;
     for (const auto &[name, places] : groups.points)
       if (groups.sides.count(name) == 0 && is_asked_for(conditions, name))

@@ -85,7 +85,7 @@ namespace PeriDeal
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       try
         {
-          groups = groups_of(read_msh(file_name, folder, dim), dim, faces);
+          groups = groups_of(*read_msh(file_name, folder, dim), dim, faces);
         }
       catch (const UserError &error)
         {

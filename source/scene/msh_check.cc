@@ -9,6 +9,9 @@
 #include <cmath>
 #include <set>
 
+#include "msh_shapes.h"
+#include "msh_touching.h"
+
 namespace PeriDeal
 {
   using namespace dealii;
@@ -17,15 +20,6 @@ namespace PeriDeal
   {
     using Vector3 = std::array<double, 3>;
 
-    // Corners of the cells as Gmsh numbers them: the ends of the edges at each of them, which in
-    // this order are right-handed, and the corners of the faces in the order in which they are seen
-    // from outside counter-clockwise (in 2D: the body lies to the left).
-    constexpr unsigned int neighbors_2[4][2] = {{1, 3}, {2, 0}, {3, 1}, {0, 2}};
-    constexpr unsigned int neighbors_3[8][3] =
-      {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
-    constexpr unsigned int faces_3[6][4] =
-      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-
     /** Edges that enclose less than this, in terms of the sine of their angle, are taken for
      * parallel. */
     constexpr double smallest_angle = 1e-8;
@@ -33,8 +27,6 @@ namespace PeriDeal
     /** Nodes closer than this, in terms of the extent of the mesh, are taken for one. */
     constexpr double smallest_length = 1e-12;
 
-
-    constexpr const char *names[4] = {"point", "line", "quadrilateral", "hexahedron"};
 
     constexpr unsigned int invalid = static_cast<unsigned int>(-1);
 
@@ -57,8 +49,7 @@ namespace PeriDeal
     /** @param around the corners as they follow each other, seen from outside */
     Face make_face(const std::array<unsigned int, 4> &around,
                    const unsigned int                 n,
-                   const unsigned int                 element,
-                   const bool                         flipped)
+                   const unsigned int                 element)
     {
       Face face{around, element, 0, true};
       std::fill(face.nodes.begin() + n, face.nodes.end(), invalid);
@@ -67,12 +58,10 @@ namespace PeriDeal
         std::min_element(around.begin(), around.begin() + n) - around.begin();
       if (n == 2)
         face.positive = first == 0;
-      else if (n == 4)
-        {
-          face.across   = around[(first + 2) % 4];
-          face.positive = around[(first + 1) % 4] < around[(first + 3) % 4];
-        }
-      face.positive = face.positive != flipped;
+      else if (n > 2)
+        face.positive = around[(first + 1) % n] < around[(first + n - 1) % n];
+      if (n == 4)
+        face.across = around[(first + 2) % 4];
       return face;
     }
 
@@ -84,7 +73,6 @@ namespace PeriDeal
         : mesh(mesh)
         , name(name)
         , dim(dim)
-        , cell_name(names[dim])
         , face_name(dim == 3 ? "face" :
                     dim == 2 ? "edge" :
                                "end")
@@ -103,12 +91,14 @@ namespace PeriDeal
           }
         check_plane(size);
         extent = *std::max_element(size.begin(), size.begin() + dim);
-        for (const MshElement &cell : mesh.cells)
-          turned.push_back(orientation(cell) < 0);
+        for (MshElement &cell : mesh.cells)
+          if (orientation(cell) < 0)
+            turn_around(cell);
         check_for_twins();
         make_faces();
         check_faces();
         check_sides();
+        find_touching();
       }
 
     private:
@@ -128,11 +118,16 @@ namespace PeriDeal
         return text;
       }
 
-      /** "the hexahedron 7 of the nodes 1, 2, ..." */
-      std::string title(const MshElement &element, const std::string &kind) const
+      const MshShape &shape_of(const MshElement &cell) const
       {
-        return "the " + kind + " " + std::to_string(element.number) + " of the nodes " +
-               nodes_of(element);
+        return shape_of_cell(dim, cell.n);
+      }
+
+      /** "the hexahedron 7 of the nodes 1, 2, ..." */
+      std::string title(const MshElement &element, const unsigned int dimension) const
+      {
+        return "the " + std::string(msh_shape(dimension, element.n)) + " " +
+               std::to_string(element.number) + " of the nodes " + nodes_of(element);
       }
 
       [[noreturn]] void fault(const MshElement &element, const std::string &what) const
@@ -145,9 +140,7 @@ namespace PeriDeal
                         const unsigned int corner,
                         const unsigned int k) const
       {
-        const unsigned int end = dim == 1 ? 1 - corner :
-                                 dim == 2 ? neighbors_2[corner][k] :
-                                            neighbors_3[corner][k];
+        const unsigned int end = shape_of(cell).neighbors[corner][k];
         Tensor<1, 3>       e;
         for (unsigned int d = 0; d < dim; ++d)
           e[d] = mesh.points[cell.nodes[end]][d] - mesh.points[cell.nodes[corner]][d];
@@ -174,7 +167,7 @@ namespace PeriDeal
        */
       bool is_straight(const MshElement &cell, const unsigned int corner) const
       {
-        if (dim != 2)
+        if (cell.n != 4 || dim != 2)
           return false;
         const Tensor<1, 3> a = edge(cell, corner, 0), b = edge(cell, corner, 1);
         const double       lengths = a.norm() * b.norm();
@@ -190,7 +183,8 @@ namespace PeriDeal
               fault(cell,
                     "found node " + std::to_string(mesh.numbers[cell.nodes[a]]) +
                       " twice in element " + std::to_string(cell.number) + ", expected " +
-                      std::to_string(cell.n) + " different nodes of a " + cell_name + ".");
+                      std::to_string(cell.n) + " different nodes of a " + shape_of(cell).name +
+                      ".");
         int sign = 0;
         for (unsigned int corner = 0; corner < cell.n; ++corner)
           {
@@ -200,7 +194,7 @@ namespace PeriDeal
               continue;
             if (own == 0 || own == -sign)
               fault(cell,
-                    title(cell, cell_name) +
+                    title(cell, dim) +
                       " is folded, flat or has its nodes in a wrong order: found " +
                       (own == 0 ? "no angle" : "an angle that opens to the other side") +
                       " at its node " + std::to_string(mesh.numbers[cell.nodes[corner]]) +
@@ -208,8 +202,21 @@ namespace PeriDeal
             sign = own;
           }
         if (sign == 0)
-          fault(cell, title(cell, cell_name) + " is flat, expected one with an area.");
+          fault(cell, title(cell, dim) + " is flat, expected one with an area.");
         return sign;
+      }
+
+      /** Number a cell the other way round. */
+      void turn_around(MshElement &cell) const
+      {
+        auto &n = cell.nodes;
+        if (cell.n == 6 || cell.n == 8)
+          for (unsigned int k = 0; k < cell.n / 2; ++k)
+            std::swap(n[k], n[k + cell.n / 2]);
+        else if (cell.n == 4 && dim == 2)
+          std::swap(n[1], n[3]);
+        else
+          std::swap(n[dim - 1], n[dim == 1 ? 1 : dim]);
       }
 
       void check_for_twins() const
@@ -218,7 +225,9 @@ namespace PeriDeal
         for (unsigned int c = 0; c < mesh.cells.size(); ++c)
           {
             sorted.emplace_back(mesh.cells[c].nodes, c);
-            std::sort(sorted.back().first.begin(), sorted.back().first.end());
+            auto &nodes = sorted.back().first;
+            std::fill(nodes.begin() + mesh.cells[c].n, nodes.end(), invalid);
+            std::sort(nodes.begin(), nodes.end());
           }
         std::sort(sorted.begin(), sorted.end());
         for (std::size_t k = 1; k < sorted.size(); ++k)
@@ -227,7 +236,7 @@ namespace PeriDeal
               const MshElement &one = mesh.cells[sorted[k - 1].second],
                                &two = mesh.cells[sorted[k].second];
               fault(two,
-                    "the " + cell_name + " " + std::to_string(two.number) +
+                    "the " + std::string(shape_of(two).name) + " " + std::to_string(two.number) +
                       " has the same nodes as number " + text_of(one) +
                       ", expected each once (is a surface or volume in two physical groups?).");
             }
@@ -237,15 +246,16 @@ namespace PeriDeal
       {
         for (unsigned int c = 0; c < mesh.cells.size(); ++c)
           {
-            const auto &nodes = mesh.cells[c].nodes;
-            for (unsigned int f = 0; f < 2 * dim; ++f)
+            const auto     &nodes = mesh.cells[c].nodes;
+            const MshShape &shape = shape_of(mesh.cells[c]);
+            for (unsigned int f = 0; f < shape.n_faces; ++f)
               {
                 std::array<unsigned int, 4> around{};
-                for (unsigned int k = 0; k < 1u << (dim - 1); ++k)
-                  around[k] = nodes[dim == 1 ? f : dim == 2 ? (f + k) % 4 : faces_3[f][k]];
-                Face face = make_face(around, 1u << (dim - 1), c, turned[c]);
+                for (unsigned int k = 0; k < shape.n_of_face[f]; ++k)
+                  around[k] = nodes[shape.faces[f][k]];
+                Face face = make_face(around, shape.n_of_face[f], c);
                 if (dim == 1)
-                  face.positive = (f == 1) != turned[c];
+                  face.positive = f == 1;
                 faces.push_back(face);
               }
           }
@@ -283,13 +293,13 @@ namespace PeriDeal
         for (unsigned int s = 0; s < mesh.sides.size(); ++s)
           {
             const auto &n = mesh.sides[s].nodes;
-            named.push_back(make_face({{n[0], n[1], n[2], n[3]}}, mesh.sides[s].n, s, false));
+            named.push_back(make_face({{n[0], n[1], n[2], n[3]}}, mesh.sides[s].n, s));
           }
         std::sort(named.begin(), named.end(), before);
         for (std::size_t k = 0; k < named.size(); ++k)
           {
             const MshElement &side = mesh.sides[named[k].element];
-            const std::string who  = title(side, names[dim - 1]);
+            const std::string who  = title(side, dim - 1);
             const auto [first, last] =
               std::equal_range(faces.begin(),
                                faces.end(),
@@ -297,7 +307,9 @@ namespace PeriDeal
                                [](const Face &a, const Face &b) { return a.nodes < b.nodes; });
             if (dim > 1 && (first == last || (dim == 3 && first->across != named[k].across)))
               fault(side,
-                    who + " is found to be no " + face_name + " of a " + cell_name +
+                    who + " is found to be no " + face_name + " of a " +
+                      (dim == 3 && side.n == 3 ? "tetrahedron or wedge" :
+                                                 shape_of(mesh.cells.front()).name) +
                       ", expected a piece of a side of the body.");
             if (dim > 1 && last - first == 2)
               inside.insert(named[k].element); // between two materials
@@ -317,6 +329,50 @@ namespace PeriDeal
         mesh.sides.swap(outside);
       }
 
+      /** In 2D its length. */
+      double area(const Face &face) const
+      {
+        const auto between = [&](const unsigned int a, const unsigned int b) {
+          Tensor<1, 3> e;
+          for (unsigned int d = 0; d < dim; ++d)
+            e[d] = mesh.points[b][d] - mesh.points[a][d];
+          return e;
+        };
+        const auto &n = face.nodes;
+        if (dim == 2)
+          return between(n[0], n[1]).norm();
+        if (n[3] == invalid)
+          return 0.5 * cross_product_3d(between(n[0], n[1]), between(n[0], n[2])).norm();
+        unsigned int beside[2], m = 0; // the corners that are not across
+        for (unsigned int k = 1; k < 4; ++k)
+          if (n[k] != face.across && m < 2)
+            beside[m++] = n[k];
+        return 0.5 *
+               cross_product_3d(between(n[0], face.across), between(beside[0], beside[1])).norm();
+      }
+
+      /** Where pieces of the surface touch that share no nodes. */
+      void find_touching()
+      {
+        std::vector<MshEdge> edges;
+        for (std::size_t k = 0; k < faces.size(); ++k)
+          {
+            const auto &n = faces[k].nodes;
+            if ((k > 0 && faces[k - 1].nodes == n) ||
+                (k + 1 < faces.size() && faces[k + 1].nodes == n))
+              continue;
+            mesh.surface += dim > 1 ? area(faces[k]) : 0.;
+            for (unsigned int a = 0; a < 4 && n[a] != invalid; ++a)
+              for (unsigned int b = a + 1; b < 4 && n[b] != invalid; ++b)
+                if (n[3] == invalid ||
+                    (a == 0 ? faces[k].across != n[b] :
+                              faces[k].across == n[a] || faces[k].across == n[b]))
+                  edges.emplace_back(n[a], n[b]);
+          }
+        if (dim > 1)
+          mesh.touching = touching_nodes(mesh, edges, dim);
+      }
+
       /** A mesh of two dimensions lies in the plane of x and y. */
       void check_plane(const Vector3 &size) const
       {
@@ -332,10 +388,9 @@ namespace PeriDeal
       MshMesh           &mesh;
       const std::string &name;
       const unsigned int dim;
-      const std::string  cell_name, face_name;
+      const std::string  face_name;
       double             extent = 0.;
-      std::vector<bool>  turned; // by cell
-      std::vector<Face>  faces;  // sorted
+      std::vector<Face>  faces; // sorted
     };
   } // namespace
 

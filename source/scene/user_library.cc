@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 the PeriDeal authors
 
+#include <perideal/base/external_program.h>
 #include <perideal/base/user_error.h>
 #include <perideal/scene/user_library.h>
 
@@ -47,16 +48,6 @@ namespace PeriDeal
     }
 
 
-    /** A word of a command of the shell. */
-    std::string as_word(const std::string &text)
-    {
-      std::string word = "'";
-      for (const char c : text)
-        word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-      return word + "'";
-    }
-
-
     /** What a compiler says, as far as one needs it: the first place and the first error. */
     std::string first_error(const fs::path &log)
     {
@@ -85,11 +76,11 @@ namespace PeriDeal
         std::ofstream(folder / name) << "      implicit real*8(a-h,o-z)\n"
                                         "      parameter (nprecd=2)\n";
       std::ofstream(folder / "perideal_bond_law.h") << text_of_bond_law_header;
-      const fs::path log     = folder / "log";
-      const int      status  = std::system(("cd " + as_word(folder.string()) + " && " + compiler +
-                                      " -shared -fPIC -O2 -I. -o " + as_word(library.string()) +
-                                      " " + as_word(fs::absolute(source).string()) + " -lm > " +
-                                      as_word(log.string()) + " 2>&1")
+      const fs::path log    = folder / "log";
+      const int      status = std::system(("cd " + shell_word(folder.string()) + " && " + compiler +
+                                      " -shared -fPIC -O2 -I. -o " + shell_word(library.string()) +
+                                      " " + shell_word(fs::absolute(source).string()) + " -lm > " +
+                                      shell_word(log.string()) + " 2>&1")
                                        .c_str());
       constexpr int  unknown = 127 << 8;
       if (status == unknown)
@@ -100,32 +91,6 @@ namespace PeriDeal
         return "cannot be compiled by '" + compiler + " -shared -fPIC -O2': " + first_error(log);
       return "";
     }
-
-
-    /** A folder that is there while this lives. */
-    class TemporaryFolder
-    {
-    public:
-      TemporaryFolder()
-      {
-        std::error_code ignored;
-        std::string     name =
-          (fs::temp_directory_path(ignored) / ("perideal_law_" + std::string(6, 'X'))).string();
-        if (mkdtemp(name.data()) != nullptr)
-          path = name;
-      }
-
-      ~TemporaryFolder()
-      {
-        std::error_code ignored;
-        if (!path.empty())
-          fs::remove_all(path, ignored);
-      }
-
-      TemporaryFolder(const TemporaryFolder &) = delete;
-
-      fs::path path; // empty: there can be none
-    };
 
 
     /** Null with a fault, as it goes on after the file's name. */
@@ -237,7 +202,7 @@ namespace PeriDeal
       {
         if (rank == 0)
           {
-            compiled = std::make_unique<TemporaryFolder>();
+            compiled = std::make_unique<TemporaryFolder>("perideal_law");
             library  = (compiled->path / "law.so").string();
             fault =
               compiled->path.empty() ?

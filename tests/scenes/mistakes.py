@@ -70,7 +70,7 @@ def box_faces(low, high):
 def scene_mistakes(folder):
     """(name, overrides or text of a scene, words of the message)."""
     whole = SQUARE_MESH.format(names="", n=8, cells=FOUR_CELLS)
-    triangles = SQUARE_MESH.format(names="", n=5, cells="5 2 2 7 7 1 2 5")
+    pyramid = SQUARE_MESH.format(names="", n=5, cells="5 7 2 7 7 1 2 3 4 5")
     file_of_directory = write_file("a_file", "text", folder)
     changed = [
         # names
@@ -199,7 +199,7 @@ def scene_mistakes(folder):
         ("broken mesh", mesh_scene(folder, "m2.msh", whole[:200]), ["'Mesh file'", "m2.msh", "broken"]),
         ("not a mesh", mesh_scene(folder, "m3.msh", "This is not a mesh.\n"), ["'Mesh file'", "m3.msh", "broken"]),
         ("empty mesh file", mesh_scene(folder, "m4.msh", ""), ["'Mesh file'", "m4.msh"]),
-        ("mesh of triangles", mesh_scene(folder, "m5.msh", triangles), ["'Mesh file'", "quadrilaterals"]),
+        ("mesh of pyramids", mesh_scene(folder, "m5.msh", pyramid), ["'Mesh file'", "pyramid", "dimension 2"]),
         ("2D mesh in 3D", {**mesh_scene(folder, "m6.msh", whole), "Dimension": "3", "Output/Probes": "",
                            "Domain/Lower corner": "0, 0, 0", "Domain/Upper corner": "1, 1, 1", "Domain/Cells": "4, 4, 4"},
          ["'Mesh file'", "m6.msh", "dimension 3"]),

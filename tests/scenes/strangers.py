@@ -420,10 +420,9 @@ def names():
                 check_close(run.probe(FE, place, column=column), runs[-1].probe(FE, place, column=column), absolute=1e-12, what=f"points of the file: {column} at {place}")
     check(runs[-1].probe(FE, (1, 0.25), column="uy") < -1e-4, "it is thinner")
 
-    triangles = SQUARE.replace("1 3 2 5 5 1 2 3 4", "1 2 2 5 5 1 2 3").replace("$Elements\n4", "$Elements\n5").replace("4 1 2 3 3 4 1\n", "4 1 2 3 3 4 1\n5 2 2 5 5 1 3 4\n")
-    second = SQUARE.replace("2 1 2 1 1 1 2\n", "2 8 2 1 1 1 2 3\n")
+    other = SQUARE.replace("2 1 2 1 1 1 2\n", "2 93 2 1 1 1 2 3\n")
     nothing = {"Models": FE, BC + "Dirichlet": "nowhere: 0", "Peridynamics/Horizon": "", "Cracks/Interfaces": "", "Cracks/Contact conductance": "", "Material/Phases/Regions": "a: mesh(b)"}
-    for what, text, words in (("triangles", triangles, ["triangle", "Mesh.SubdivisionAlgorithm = 1"]), ("second order", second, ["higher order", "Mesh.SubdivisionAlgorithm = 1"]),
+    for what, text, words in (("an unknown element", other, ["type 93", "first and second order"]),
                               ("no such side", SQUARE, ["mesh(b)", "physical group"])):
         run = run_scene(NAMED, {**nothing, "Domain/Mesh file": write_file("wrong.msh", text)}, expect_error=True)
         check_message(run, *words)

@@ -124,7 +124,7 @@ TEST(MshCheck, header)
 {
   expect_fault("", 2, 1, {"the file ends", "'$MeshFormat'"});
   expect_fault("This is not a mesh.\n", 2, 1, {"no Gmsh file", "broken"});
-  expect_fault("$NOD\n1\n", 2, 1, {"version 1", "2.2 and 4.1"});
+  expect_fault("$NOD\n1\n", 2, 1, {"version 1", "4.0 and 4.1"});
   expect_fault(with(old, "2.2 0", "3 0"), 2, 2, {"version '3'"});
   expect_fault(with(old, "2.2 0", "2.2 1"), 2, 2, {"binary", "as text"});
   expect_fault(with(old, "0 8", "0 4"), 2, 2, {"8"});
@@ -160,7 +160,7 @@ TEST(MshCheck, sections_and_counts)
                2,
                8,
                {"'$EndEntities'", "entity 1 of dimension 2"});
-  expect_fault(with(latest, "1 5 0\n", "2 5 6 0\n"), 2, 6, {"physical groups 5 and 6"});
+  expect_sound(with(latest, "1 5 0\n", "2 5 6 0\n")); // two groups of one line: the first counts
   expect_fault(with(latest, "1 3 1 2\n", "1 7 1 2\n"), 2, 33, {"entity 7", "'$Entities'"});
   expect_fault(with(latest, "1 3 1 2\n", "2 3 1 2\n"), 2, 33, {"line", "dimension 2"});
 }
@@ -181,14 +181,22 @@ TEST(MshCheck, numbers)
 
 TEST(MshCheck, types)
 {
-  expect_fault(with(old, "4 3 2 0 4 2 3 6 5", "4 2 2 0 4 2 3 6"),
-               2,
-               18,
-               {"triangle", "quadrilaterals in 2D"});
-  expect_fault(with(old, "4 3 2 0 4 2 3 6 5", "4 10 2 0 4 2 3 6 5"), 2, 18, {"type 10"});
+  expect_sound(with(old, "4 3 2 0 4 2 3 6 5", "4 2 2 0 4 2 3 6"));
+  expect_sound(with(old, "4 3 2 0 4 2 3 6 5", "4 10 2 0 4 2 3 6 5 1 1 1 1 1")); // of second order
+  expect_fault(with(old, "4 3 2 0 4 2 3 6 5", "4 93 2 0 4 2 3 6 5"), 2, 18, {"type 93"});
+  expect_fault(with(cubes, "2 3 6 5 8 9 12 11", "2 3 6 5 8"), 3, 27, {"'$EndElements'"});
+  expect_fault(with(with(cubes, "1 3 5 2", "1 3 7 2"),
+                    "2 1 2 5 4 7 8 11 10\n3 2 3 6 5 8 9 12 11",
+                    "2 1 2 5 4 7\n3 2 3 6 5 8"),
+               3,
+               24,
+               {"pyramid", "without pyramids"});
   expect_fault(cubes, 2, 24, {"hexahedron", "dimension 2"});
   expect_fault(old, 3, 19, {"no hexahedra", "dimension 3"});
-  expect_fault(with(latest, "2 4 0 9", "2 4 1 9"), 2, 11, {"parametric"});
+  expect_fault(with(latest, "2 4 0 9", "2 4 1 9"),
+               2,
+               23,
+               {"y of node 2"}); // with two parameters each
 }
 
 
@@ -295,4 +303,27 @@ TEST(MshCheck, sides)
   expect_sound(with(old, "2 1 2 5 3 2 3", "2 1 2 5 3 2 1")); // the same one twice
   expect_sound(with(cubes, "1 1 4 5 2", "1 2 5 11 8"), 3);
   expect_fault(with(cubes, "1 1 4 5 2", "1 1 5 4 2"), 3, 23, {"no face of a hexahedron"});
+}
+
+
+TEST(MshCheck, pieces_that_touch)
+{
+  // A node in the middle of the edge 2-5 of the left square, which is one of two on the right.
+  const std::string hanging = with(
+    with(with(old, "$Nodes\n6\n", "$Nodes\n8\n"), "6 2 1 0\n", "6 2 1 0\n7 1 0.5 0\n8 2 0.5 0\n"),
+    "4 3 2 0 4 2 3 6 5",
+    "4 3 2 0 4 2 3 8 7\n5 3 2 0 4 7 8 6 5");
+  MshMesh mesh = parse_msh(with(hanging, "$Elements\n4", "$Elements\n5"), "part.msh", 2);
+  check_msh(mesh, "part.msh", 2);
+  EXPECT_EQ(mesh.touching, (std::vector<unsigned int>{6}));
+  EXPECT_NEAR(mesh.surface, 8., 1e-12);
+  // Doubled nodes along that edge.
+  mesh = parse_msh(
+    with(with(with(old, "$Nodes\n6\n", "$Nodes\n8\n"), "6 2 1 0\n", "6 2 1 0\n7 1 0 0\n8 1 1 0\n"),
+         "2 1 2 5 3 2 3\n3 3 2 0 4 1 2 5 4\n4 3 2 0 4 2 3 6 5",
+         "2 1 2 5 3 7 3\n3 3 2 0 4 1 2 5 4\n4 3 2 0 4 7 3 6 8"),
+    "part.msh",
+    2);
+  check_msh(mesh, "part.msh", 2);
+  EXPECT_EQ(mesh.touching, (std::vector<unsigned int>{1, 4, 6, 7}));
 }

@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the PeriDeal authors
+"""Meshes as people bring them: a bar of tetrahedra in all formats, bars of all kinds of cells, damaged files.
+
+    mesh_formats.py formats | bars | damaged
+
+The bar has edges 2, 1, 1 and is divided into cubes, and each cube into cells. Writers of the formats stand here, apart from the readers.
+"""
+
+import itertools
+import os
+import random
+import re
+import struct
+
+from scene_test import FE, PD, Comparison, check, check_message, check_one_message, run_parts, run_perideal, run_scene, scene_text, temporary_folder
+from perideal.meshes import Fault, convert
+from scene_texts import mesh_text
+
+FOLDER = temporary_folder()
+# Corners of a cube by their bits x, y, z; six tetrahedra around its diagonal, two wedges along z, the cube.
+CELLS = {"tetrahedra": [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)],
+         "wedges": [(0, 1, 3, 4, 5, 7), (0, 3, 2, 4, 7, 6)], "hexahedra": [(0, 1, 3, 2, 4, 5, 7, 6)]}
+GMSH = {4: 4, 6: 6, 8: 5}
+SHAPE, LENGTH = (4, 2, 2), 2.0
+
+BAR = scene_text("""
+Dimension = 3
+Physics = elasticity
+Models = finite elements
+Domain/Shape = mesh file
+Material/Young modulus = 200
+Material/Poisson ratio = 0.3
+Boundary conditions/Displacement = left: 0, 0, 0
+Boundary conditions/Traction = right: 1, 0, 0
+Output/Fields = none
+""")
+
+
+def bar(kind, shape=SHAPE):
+    """Nodes, cells and the nodes of its ends."""
+    number = {index: k for k, index in enumerate(itertools.product(*(range(n + 1) for n in shape)))}
+    nodes = [tuple(LENGTH * i / shape[0] if d == 0 else i / shape[d] for d, i in enumerate(index)) for index in number]
+    cells = [[number[x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)] for c in corners]
+             for x, y, z in itertools.product(*map(range, shape)) for corners in CELLS[kind]]
+    ends = {name: [number[index] for index in number if index[0] == at] for name, at in (("left", 0), ("right", shape[0]))}
+    return nodes, cells, ends
+
+
+def faces_in(cells, nodes):
+    """Faces of tetrahedra that lie among these nodes."""
+    return sorted({tuple(sorted(face)) for cell in cells for face in itertools.combinations(cell, 3) if set(face) <= set(nodes)})
+
+
+def gmsh_text(nodes, cells, sides):
+    """Version 2.2."""
+    elements = [f"{GMSH[len(cell)]} 2 9 9 " + " ".join(str(k + 1) for k in cell) for cell in cells]
+    elements += [f"{ {3: 2, 4: 3}[len(face)]} 2 {group} {group} " + " ".join(str(k + 1) for k in face) for group, faces in enumerate(sides.values(), 1) for face in faces]
+    return mesh_text(nodes, elements, [(2, group, name) for group, name in enumerate(sides, 1)] + [(3, 9, "steel")])
+
+
+def gmsh_binary(version, nodes, cells, sides):
+    """Version 4.0 or 4.1, all nodes of the volume 1, faces of the surfaces 1 and 2."""
+    latest = version == "4.1"
+    count, tag = ("<Q", "<Q") if latest else ("<Q", "<i")
+    integers = lambda *numbers: struct.pack(f"<{len(numbers)}i", *numbers)
+    names = "".join(f'{d} {k} "{name}"\n' for d, k, name in [(2, k, name) for k, name in enumerate(sides, 1)] + [(3, 9, "steel")])
+    data = f"$MeshFormat\n{version} 1 8\n".encode() + integers(1) + f"\n$EndMeshFormat\n$PhysicalNames\n3\n{names}$EndPhysicalNames\n$Entities\n".encode()
+    data += struct.pack("<4Q", 0, 0, len(sides), 1)
+    for number, group in [(k, k) for k in range(1, len(sides) + 1)] + [(1, 9)]:
+        data += integers(number) + struct.pack("<6d", *[0.0] * 6) + struct.pack("<Q", 1) + integers(group) + struct.pack("<Q", 0)
+    data += b"\n$EndEntities\n$Nodes\n"
+    head = lambda entity, dimension, *rest: integers(dimension, entity, *rest) if latest else integers(entity, dimension, *rest)
+    data += struct.pack("<4Q", 1, len(nodes), 1, len(nodes)) if latest else struct.pack("<2Q", 1, len(nodes))
+    data += head(1, 3, 0) + struct.pack("<Q", len(nodes))
+    if latest:
+        data += b"".join(struct.pack("<Q", k + 1) for k in range(len(nodes))) + b"".join(struct.pack("<3d", *node) for node in nodes)
+    else:
+        data += b"".join(struct.pack("<i3d", k + 1, *node) for k, node in enumerate(nodes))
+    blocks = [(group, 2, 2, faces) for group, faces in enumerate(sides.values(), 1)] + [(1, 3, GMSH[len(cells[0])], cells)]
+    n = sum(len(block[3]) for block in blocks)
+    data += b"\n$EndNodes\n$Elements\n" + (struct.pack("<4Q", len(blocks), n, 1, n) if latest else struct.pack("<2Q", len(blocks), n))
+    number = itertools.count(1)
+    for entity, dimension, kind, rows in blocks:
+        data += head(entity, dimension, kind) + struct.pack(count, len(rows))
+        for row in rows:
+            data += struct.pack(tag, next(number)) + b"".join(struct.pack(tag, k + 1) for k in row)
+    return data + b"\n$EndElements\n"
+
+
+def abaqus_text(nodes, cells, ends, surfaces=False):
+    """Sets of nodes at the ends, or surfaces of faces; two sets of elements."""
+    half = len(cells) // 2
+    text = "*Heading\n** a bar\n*Part, name=bar\n*Node\n" + "".join(f"{k}, {x!r}, {y!r}, {z!r}\n" for k, (x, y, z) in enumerate(nodes, 1))
+    text += "*Element, type=C3D4, elset=all\n" + "".join(f"{k}, {', '.join(str(i + 1) for i in cell)}\n" for k, cell in enumerate(cells, 1))
+    text += f"*Elset, elset=steel, generate\n{1}, {half}, 1\n*Elset, elset=iron, generate\n{half + 1}, {len(cells)}\n"
+    for name, rows in ends.items():
+        if surfaces:
+            text += f"*Surface, type=ELEMENT, name={name}\n"
+            for k, cell in enumerate(cells, 1):
+                for side, corners in enumerate(((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)), 1):
+                    text += f"{k}, S{side}\n" if {cell[c] for c in corners} <= set(rows) else ""
+        else:
+            text += f"*Nset, nset={name}\n" + ",\n".join(str(row + 1) for row in rows) + "\n"
+    return text + "*End Part\n*Assembly, name=all of it\n*Instance, name=bar-1, part=bar\n*End Instance\n*End Assembly\n*Step\n*Static\n*End Step\n"
+
+
+def unv_text(nodes, cells, ends):
+    text = "    -1\n  2411\n" + "".join(f"{k:10d}{1:10d}{1:10d}{11:10d}\n" + "".join(f"{x:25.16E}" for x in node).replace("E", "D") + "\n" for k, node in enumerate(nodes, 1))
+    text += "    -1\n    -1\n  2412\n" + "".join(f"{k:10d}{111:10d}{1:10d}{1:10d}{7:10d}{4:10d}\n" + "".join(f"{i + 1:10d}" for i in cell) + "\n" for k, cell in enumerate(cells, 1))
+    text += "    -1\n    -1\n  2467\n"
+    for k, (name, rows, kind) in enumerate([(name, rows, 7) for name, rows in ends.items()] + [("steel", range(len(cells)), 8)], 1):
+        entries = [f"{kind:10d}{row + 1:10d}{0:10d}{0:10d}" for row in rows]
+        text += "".join(f"{number:10d}" for number in (k, 0, 0, 0, 0, 0, 0, len(entries))) + f"\n{name}\n"
+        text += "".join("".join(entries[i:i + 2]) + "\n" for i in range(0, len(entries), 2))
+    return text + "    -1\n"
+
+
+def exodus_bytes(nodes, cells, ends):
+    """A classic NetCDF file with one block and two side sets."""
+    pad = lambda data: data + bytes(-len(data) % 4)
+    name = lambda text: struct.pack(">I", len(text)) + pad(text.encode())
+    sides = {end: [(k, side) for k, cell in enumerate(cells, 1) for side, corners in enumerate(((0, 1, 3), (1, 2, 3), (0, 3, 2), (0, 2, 1)), 1)
+                   if {cell[c] for c in corners} <= set(rows)] for end, rows in ends.items()}
+    text = lambda words: b"".join(word.encode().ljust(33, b"\0") for word in words)
+    ints = lambda numbers: struct.pack(f">{len(numbers)}i", *numbers)
+    sizes = {"num_nodes": len(nodes), "num_el": len(cells), "four": 4, "one": 1, "two": 2, "len": 33, "n1": len(sides["left"]), "n2": len(sides["right"])}
+    variables = [(f"coord{axis}", ["num_nodes"], 6, struct.pack(f">{len(nodes)}d", *(node[d] for node in nodes)), None) for d, axis in enumerate("xyz")]
+    variables += [("eb_names", ["one", "len"], 2, text(["steel"]), None), ("connect1", ["num_el", "four"], 4, ints([i + 1 for cell in cells for i in cell]), "TETRA"),
+                  ("ss_names", ["two", "len"], 2, text(ends), None), ("ss_prop1", ["two"], 4, ints([1, 2]), None)]
+    for k, rows in enumerate(sides.values(), 1):
+        variables += [(f"elem_ss{k}", [f"n{k}"], 4, ints([row[0] for row in rows]), None), (f"side_ss{k}", [f"n{k}"], 4, ints([row[1] for row in rows]), None)]
+    places = list(sizes)
+
+    def head(begins):
+        data = b"CDF\x01" + struct.pack(">3I", 0, 10, len(sizes)) + b"".join(name(one) + struct.pack(">I", size) for one, size in sizes.items())
+        data += struct.pack(">4I", 0, 0, 11, len(variables))
+        for (one, of, kind, values, attribute), begin in zip(variables, begins):
+            data += name(one) + struct.pack(">I", len(of)) + b"".join(struct.pack(">I", places.index(d)) for d in of)
+            data += struct.pack(">2I", 12, 1) + name("elem_type") + struct.pack(">2I", 2, len(attribute)) + pad(attribute.encode()) if attribute else struct.pack(">2I", 0, 0)
+            data += struct.pack(">3I", kind, len(pad(values)), begin)
+        return data
+
+    begins, at = [], len(head([0] * len(variables)))
+    for variable in variables:
+        begins.append(at)
+        at += len(pad(variable[3]))
+    return head(begins) + b"".join(pad(variable[3]) for variable in variables)
+
+
+THREE = 'NumberOfComponents="3"'
+
+
+def vtu_text(nodes, cells):
+    array = lambda kind, name, numbers, more="": f'<DataArray type="{kind}" Name="{name}" {more} format="ascii">{" ".join(map(str, numbers))}</DataArray>'
+    return ('<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>'
+            f'<Piece NumberOfPoints="{len(nodes)}" NumberOfCells="{len(cells)}"><Points>{array("Float64", "Points", [x for node in nodes for x in node], THREE)}</Points>'
+            f'<Cells>{array("Int64", "connectivity", [i for cell in cells for i in cell])}{array("Int64", "offsets", [4 * (k + 1) for k in range(len(cells))])}'
+            f'{array("UInt8", "types", [10] * len(cells))}</Cells><CellData>{array("Int64", "material", [5] * len(cells))}</CellData></Piece></UnstructuredGrid></VTKFile>')
+
+
+def write(name, data):
+    path = os.path.join(FOLDER, name)
+    with open(path, "wb") as file:
+        file.write(data if isinstance(data, bytes) else data.encode())
+    return path
+
+
+def all_formats():
+    """Paths of the bar of tetrahedra, by format."""
+    nodes, cells, ends = bar("tetrahedra")
+    sides = {name: faces_in(cells, rows) for name, rows in ends.items()}
+    return {"msh 2.2": write("old.msh", gmsh_text(nodes, cells, sides)), "msh 4.0, binary": write("four.msh", gmsh_binary("4.0", nodes, cells, sides)),
+            "msh 4.1, binary": write("latest.msh", gmsh_binary("4.1", nodes, cells, sides)), "inp, sets of nodes": write("sets.inp", abaqus_text(nodes, cells, ends)),
+            "inp, surfaces": write("surfaces.inp", abaqus_text(nodes, cells, ends, surfaces=True)), "unv": write("bar.unv", unv_text(nodes, cells, ends)),
+            "Exodus": write("bar.exo", exodus_bytes(nodes, cells, ends)), "vtu": write("bar.vtu", vtu_text(nodes, cells))}
+
+
+def formats():
+    """The same mesh whatever the format; sides and regions by their names; what is converted can be computed, also on two processes."""
+    n = 4 * 6 * 16  # cells
+    table = Comparison("A bar of tetrahedra in all formats: what `perideal mesh` tells, and its elongation")
+    for what, path in all_formats().items():
+        status, out, err = run_perideal(["mesh", path])
+        if what == "vtu" and status == 1:  # meshio is not needed by anything else
+            check_one_message(out, err, ["bar.vtu", "meshio", "python3-meshio"], what)
+            continue
+        check(status == 0, f"{what}: {err}")
+        check(f"{n} hexahedra, divided from {n // 4} cells" in out and "volume 2\n" in out and "from (0, 0, 0) to (2, 1, 1)" in out, f"{what}: {out}")
+        if what == "vtu":
+            check("regions: 5: 384 cells" in out, f"{what}: {out}")
+            continue
+        for side in ("left", "right"):
+            check(re.search(rf"'{side}' \(\d+\): 24 faces, area 1\b", out), f"{what}, {side}: {out}")
+        check("area 8\n" in out, f"{what}, the rest of the surface: {out}")
+        check("'steel'" in out and ("inp" not in what or re.search(r"'steel' \(\d+\): 192 cells", out) and "'iron'" in out and "'all' is left out" in out), f"{what}: {out}")
+        run = run_scene(BAR, {"Domain/Mesh file": path}, ranks=2 if what == "Exodus" else 1)
+        table.add(f"{what}: force on the left side", run.total("force on left in x", FE), -1.0, relative=1e-9)
+    out_path = os.path.join(FOLDER, "out.msh")
+    status, out, _ = run_perideal(["mesh", os.path.join(FOLDER, "sets.inp"), out_path])
+    again = run_perideal(["mesh", out_path])[1]
+    check(status == 0 and "'left'" in again and "'iron'" in again and f": {n} hexahedra, 553 nodes" in again, f"what was written: {again}")
+    parted = {"Domain/Mesh file": os.path.join(FOLDER, "sets.inp"), "Material/Phases/Regions": "soft: mesh(iron)", "Material/Phases/Young modulus": "soft: 100",
+              "Material/Poisson ratio": "0", "Output/Probes": "2, 0.5, 0.5", "Solver/Tolerance": "1e-13"}
+    run = run_scene(BAR, parted)
+    table.add("half of another stiffness: elongation", run.probe(FE, (2, 0.5, 0.5), column="ux"), 1 / 200 + 1 / 100, relative=1e-9)
+    check("wedge" in run_perideal(["mesh", write("wedges.msh", gmsh_text(*bar("wedges")[:2], {}))])[1], "wedges are not named")
+    check_message(run_scene(BAR, {"Domain/Mesh file": os.path.join(FOLDER, "sets.inp"), "Boundary conditions/Traction": "rihgt: 1, 0, 0"}, expect_error=True), "rihgt", "left", "right")
+    table.show()
+
+
+def bars():
+    """Young's modulus of bars of all kinds of cells whose edges are alike once they are divided."""
+    table = Comparison("Young's modulus of a bar, 200")
+    for kind, shape in (("hexahedra", (16, 8, 8)), ("tetrahedra", (6, 3, 3)), ("wedges", (8, 4, 8))):
+        nodes, cells, ends = bar(kind, shape)
+        path = write(f"{kind}.msh", gmsh_text(nodes, cells, {}))
+        left = {name: [k for k, node in enumerate(nodes) if node[d] == at] for name, d, at in (("x0", 0, 0), ("y0", 1, 0), ("z0", 2, 0), ("x1", 0, LENGTH))}
+        sides = {name: [face for face in _surface(cells) if set(face) <= set(rows)] for name, rows in left.items()}
+        path = write(f"{kind}.msh", gmsh_text(nodes, cells, sides))
+        run = run_scene(BAR, {"Domain/Mesh file": path, "Models": f"{FE}, {PD}", "Boundary conditions/Displacement": "", "Boundary conditions/Symmetry": "x0, y0, z0",
+                              "Boundary conditions/Traction": "x1: 1, 0, 0", "Peridynamics/Horizon": "0.4", "Peridynamics/Kernel exponent": "0",
+                              "Output/Probes": "0.5, 0.5, 0.5 ; 1.5, 0.5, 0.5", "Solver/Tolerance": "1e-10"})
+        for model, bound in ((FE, 0.01), (PD, 0.03)):
+            stretch = run.probe(model, (1.5, 0.5, 0.5), column="ux") - run.probe(model, (0.5, 0.5, 0.5), column="ux")
+            table.add(f"{kind}, {model}", 1 / stretch, 200, relative=1e-7 if model == FE else bound)
+    table.show()
+
+
+def _surface(cells):
+    """Faces of one cell only, as their corners follow each other."""
+    tables = {4: [(0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)], 6: [(0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)],
+              8: [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]}
+    found = {}
+    for cell in cells:
+        for corners in tables[len(cell)]:
+            face = tuple(cell[c] for c in corners)
+            found.setdefault(tuple(sorted(face)), []).append(face)
+    return [faces[0] for faces in found.values() if len(faces) == 1]
+
+
+def damaged():
+    """Formats that are converted, cut short and with changed bytes: read, or one fault that says why; and what no mesh is."""
+    generator = random.Random(7)
+    out = os.path.join(FOLDER, "converted.msh")
+    faults = set()
+    for what, path in all_formats().items():
+        if what.startswith("msh") or what == "vtu":  # damaged_meshes has the first, meshio the second
+            continue
+        with open(path, "rb") as file:
+            data = file.read()
+        for k in range(40):
+            broken = bytearray(data[:generator.randrange(len(data))] if k % 2 else data)
+            for _ in range(generator.choice((1, 12)) * (k % 2 == 0)):
+                broken[generator.randrange(len(broken))] = generator.choice(b"0123456789 .,-*\n\xff")
+            name = write("damaged" + os.path.splitext(path)[1], bytes(broken))
+            try:
+                convert(name, out)
+            except Fault as fault:
+                faults.add(str(fault)[:20])
+            except Exception as error:
+                check(False, f"{what}, damage {k}: {type(error).__name__}: {error}")
+    check(len(faults) > 5, f"faults that were found: {faults}")
+    nodes = bar("tetrahedra", (1, 1, 1))[0]
+    for name, data, words in (("none.inp", "*Node\n1, 0, 0, 0\n", ["no elements"]), ("text.inp", "what is this\n", ["no input file of Abaqus"]),
+                              ("missing.inp", "*Node\n1, 0, 0\n*Element, type=CPS3\n1, 1, 2, 3\n", ["no node 2"]), ("words.inp", "*Node\n1,0,zero\n", ["*NODE", "zero"]),
+                              ("none.unv", "nothing\n", ["no universal file"]), ("none.exo", "nothing", ["no NetCDF file"])):
+        try:
+            convert(write(name, data), out)
+            check(False, f"{name} is converted")
+        except Fault as fault:
+            check(all(word in str(fault) for word in words), f"{name}: {fault}")
+    for name, data, words in (("flat.inp", "*Node\n1,0,0\n2,1,1\n3,2,2\n*Element, type=CPS3\n1, 1, 2, 3\n", ["triangle", "no angle"]),
+                              ("text.unv", "nothing\n", ["no universal file"]), ("pyramid.msh", mesh_text([*nodes], ["7 2 0 0 1 2 4 3 5"]), ["pyramid"])):
+        status, said, err = run_perideal(["mesh", write(name, data)])
+        check_one_message(said, err, ["'Mesh file'", name, *words], name)
+    status, said, err = run_perideal(["mesh", "nowhere.inp"])
+    check_one_message(said, err, ["nowhere.inp", "cannot be read"], "a file that is not there")
+
+
+if __name__ == "__main__":
+    run_parts(formats, bars, damaged)
