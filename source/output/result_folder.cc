@@ -443,7 +443,8 @@ namespace PeriDeal
     if (file.empty())
       return;
     std::error_code ignored; // what cannot be made shows in the next line
-    fs::create_directories(fs::path(file).parent_path(), ignored);
+    if (name.find('/') != std::string::npos)
+      fs::create_directory(fs::path(file).parent_path(), ignored);
     if (const int problem = replace_file(file, text); problem != 0)
       keep_failure(name, problem);
   }

@@ -123,6 +123,8 @@ namespace PeriDeal
     Timings::Scope scope(this->timings, "thermal loads");
     with_formulas(this->dofs().get_communicator(),
                   [&] { op().set_temperature_change(computed_temperature_change(*this)); });
+    if (loading && scene.moduli_change())
+      loading->stiffness_changed();
   }
 
 

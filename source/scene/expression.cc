@@ -111,7 +111,8 @@ namespace PeriDeal
         if (!has(variables, table.name))
           parser.DefineFunUserData(table.name,
                                    value_of_table,
-                                   const_cast<FormulaTable *>(&table)); // it does not change
+                                   const_cast<FormulaTable *>(&table), // it does not change
+                                   false); // so that what it lacks is told of numbers, too
     }
 
 

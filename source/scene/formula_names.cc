@@ -49,7 +49,10 @@ namespace PeriDeal
              " The table '" + table->name + "' (" + table->file + ") goes from " +
                number_text(table->places.front()) + " to " + number_text(table->places.back()) +
                " and was asked for " + number_text(place) +
-               ". Add rows, or write 'hold' behind its file in 'Tables' for the numbers at its ends.";
+               ". Add rows, or write 'hold' behind its file in 'Tables' for the numbers at its ends." +
+               (place == 0. ?
+                  " If 0 is the temperature that the body starts from, give another 'Initial value' in section 'Initial and source'." :
+                  "");
   }
 
 

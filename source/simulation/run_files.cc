@@ -106,10 +106,14 @@ namespace PeriDeal
   {
     folder.write("scene.prm", scene_with_defaults());
     write_image_as_read(scene, folder);
-    std::string fault; // the file has been read before
     for (const FormulaTable &table : scene.formulas.names->tables)
       if (folder.writes())
-        folder.write(copy_of_table(table), read_file(table.file, most_bytes_of_data, fault));
+        {
+          std::string       fault; // the file has been there before
+          const std::string text = read_file(table.file, most_bytes_of_data, fault);
+          if (fault.empty())
+            folder.write(copy_of_table(table), text);
+        }
     if (folder.writes())
       folder.claim("report.html"); // the scripts that draw it keep no list
     folder.check();

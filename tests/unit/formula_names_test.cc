@@ -109,7 +109,7 @@ namespace PeriDeal
     expect_parts(message,
                  {"'Source' in section 'Here'",
                   "x > 3 ? 2*k(x) : 1",
-                  "(5, 0, 0)",
+                  "at (5)",
                   "table 'k'",
                   "k.csv",
                   "from 0 to 1",

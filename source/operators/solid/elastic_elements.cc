@@ -598,12 +598,10 @@ namespace PeriDeal
     const WithGhosts ghosts(u);
     if (cells.stresses)
       {
-        const bool is_first   = !cells.stresses->has_begun();
-        double     dissipated = cells.stresses->accept(u, t);
+        double dissipated = cells.stresses->accept(u, t);
         if (nodal(zone_bonds))
           dissipated += nodal(zone_bonds)->accept(u, t);
-        if (!is_first) // no step leads there, and no work of loads is known
-          this->released_beside.by_law += dissipated;
+        this->released_beside.by_law += dissipated;
         if ((dissipated > 0. || cells.stresses->law().may_fail()) && body.elasticity.is_static())
           linearize(u); // as for a run that goes on from here
       }

@@ -204,13 +204,13 @@ namespace PeriDeal
           keep_surrogate();
         take_loaded(time);
       }
+    ElasticOperator::exchange(archive, keys); // contact is that of its temperature
     if (archive.loads())
       contact->renew();
     contact->exchange(archive, keys);
     if (archive.loads())
       latest.contact_is_loaded = latest.is_made;
     conditions->exchange(archive, keys);
-    ElasticOperator::exchange(archive, keys);
   }
 
 

@@ -105,6 +105,7 @@ namespace PeriDeal
       return;
     find_stiffness_diagonal(solid, stiffness_diagonal);
     conditions->mask(stiffness_diagonal, 1.);
+    contact->renew();
   }
 
 
