@@ -195,8 +195,8 @@ TEST(MshCheck, types)
   expect_fault(old, 3, 19, {"no hexahedra", "dimension 3"});
   expect_fault(with(latest, "2 4 0 9", "2 4 1 9"),
                2,
-               23,
-               {"y of node 2"}); // with two parameters each
+               30,
+               {"z of node 6"}); // with two parameters each
 }
 
 
