@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -146,6 +147,26 @@ namespace PeriDeal
     }
 
 
+    /** @param at tells the place in the file */
+    double number_in(const std::vector<std::string>     &cells,
+                     const std::size_t                   column,
+                     const std::string                  &where,
+                     const std::function<std::string()> &at)
+    {
+      const auto which = [&]() { return "column " + std::to_string(column + 1); };
+      if (column >= cells.size() || cells[column].empty())
+        entry_error(where, at() + ": there is nothing in " + which() + ".");
+      const std::string          &cell   = cells[column];
+      const std::optional<double> number = plain_number(cell);
+      if (!number || !std::isfinite(*number))
+        entry_error(
+          where,
+          at() + ": found '" + cell + "' in " + which() + ", needs a number" +
+            (cell.find(',') != std::string::npos ? " (decimals are written with a point)." : "."));
+      return *number;
+    }
+
+
     FormulaTable table_of(const TableEntry  &entry,
                           const std::string &text,
                           const std::string &file,
@@ -185,20 +206,7 @@ namespace PeriDeal
             }
           double numbers[2];
           for (unsigned int k = 0; k < 2; ++k)
-            {
-              const auto which = [&]() { return "column " + std::to_string(columns[k] + 1); };
-              if (columns[k] >= cells.size() || cells[columns[k]].empty())
-                entry_error(where, at() + ": there is nothing in " + which() + ".");
-              const std::string          &cell   = cells[columns[k]];
-              const std::optional<double> number = plain_number(cell);
-              if (!number || !std::isfinite(*number))
-                entry_error(where,
-                            at() + ": found '" + cell + "' in " + which() + ", needs a number" +
-                              (cell.find(',') != std::string::npos ?
-                                 " (decimals are written with a point)." :
-                                 "."));
-              numbers[k] = *number;
-            }
+            numbers[k] = number_in(cells, columns[k], where, at);
           if (!table.places.empty() && !(numbers[0] > table.places.back()))
             entry_error(where,
                         at() + ": found " + number_text(numbers[0]) + " behind " +

@@ -197,6 +197,26 @@ def plastic():
     table.show()
 
 
+CLOSED = {**{f"Boundary conditions/{entry}": "" for entry in ("Symmetry", "Convection")}, "Models": "peridynamics", "Domain/Lower corner": "0, 0", "Domain/Upper corner": "2, 1", "Domain/Cells": "20, 10", "Material/Thermal expansion": "0",
+          "Material/Poisson ratio": "0.2", "Material/Conductivity": "1", "Cracks/Segments": "1,0.2 ; 1,0.8", "Boundary conditions/Dirichlet": "top: 1000 ; bottom: 1000", "Boundary conditions/Displacement": "left: 0, 0",
+          "Boundary conditions/Traction": "right: -1, 0", "Elasticity/Temperature change": "computed", "Elasticity/Reference temperature": "0", "Time/Steady": "true", "Output/Probes": "1.975,0.475 ; 0.725,0.475", "Output/Fields": "none"}
+
+
+def stiffer():
+    """Bodies that get stiffer or softer than they were at the reference: closed cracks, and solvers, follow."""
+    table = Comparison("Pressed on a crack, E = 100 to 1100: displacement times E")
+    scale = {name: value for name, value in (("1000*(1.1 - T/1000)", 100), ("1000*(0.1 + T/1000)", 1100))}
+    for solver in ("linear", "adaptive dynamic relaxation", "dynamic relaxation"):
+        settings = {**CLOSED, "Elasticity/Solver": solver, "Solver/Tolerance": "1e-10", **({} if solver == "linear" else {"Domain/Cells": "8, 4", "Output/Probes": "1.9,0.4"})}
+        places = ((1.975, 0.475), (0.725, 0.475)) if solver == "linear" else ((1.9, 0.4),)
+        given = run_scene(HOT, {**settings, "Material/Young modulus": "1000 + 0*T"})
+        for modulus, now in scale.items():
+            run = run_scene(HOT, {**settings, "Material/Young modulus": modulus})
+            for place in places:
+                table.add(f"{solver}, E = {now}, at {place}", run.probe(PD, place, column="ux") * now, given.probe(PD, place, column="ux") * 1000, relative=1e-9)
+    table.show()
+
+
 def mistakes():
     """What is refused, in one message."""
     cases = (
@@ -215,4 +235,4 @@ def mistakes():
 
 
 if __name__ == "__main__":
-    run_parts(held, field, bars, motion, plastic, mistakes)
+    run_parts(held, field, bars, motion, plastic, stiffer, mistakes)
