@@ -525,7 +525,8 @@ namespace PeriDeal
     options.direct_up_to   = scene.solver.direct_up_to;
     options.multigrid      = scene.elasticity.multigrid();
     // Where stretches are known; what softens waits for no motion.
-    options.breaks_in_motion = scene.elasticity.breaks_in_motion() && !scene.material.law.softens();
+    options.softens          = scene.material.law.softens();
+    options.breaks_in_motion = scene.elasticity.breaks_in_motion() && !options.softens;
     if (scene.elasticity.controls_loads())
       options.control_share = scene.elasticity.dissipation_step;
     options.remembers     = !scene.material.law.user.library.empty();

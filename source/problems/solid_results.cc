@@ -768,6 +768,8 @@ namespace PeriDeal
   json SolidProblem<dim>::describe_solving() const
   {
     json entry{{"iterations", n_iterations}};
+    if (loading && loading->n_newton_iterations() > 0)
+      entry["Newton iterations"] = loading->n_newton_iterations();
     if (stepper)
       {
         entry["stepper"]     = stepper->name();

@@ -77,6 +77,21 @@ namespace PeriDeal
   }
 
 
+  double WorkOfForces::counted_too_much(const Vector &from,
+                                        const Vector &to,
+                                        const Vector &unbalanced) const
+  {
+    double work = 0.;
+    for (const unsigned int i : active)
+      if (held[i])
+        work +=
+          0.5 *
+          (last_forces.local_element(i) - load.local_element(i) + unbalanced.local_element(i)) *
+          (to.local_element(i) - from.local_element(i));
+    return dealii::Utilities::MPI::sum(work, to.get_mpi_communicator());
+  }
+
+
   void WorkOfForces::exchange(Archive &archive, const NodeKeys &keys)
   {
     archive.exchange("work has begun", begun);

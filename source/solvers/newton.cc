@@ -44,7 +44,13 @@ namespace PeriDeal
 
       void exchange(Archive &archive) override
       {
+        archive.exchange("Newton iterations", n_systems);
         solver.exchange(archive);
+      }
+
+      unsigned int n_newton_iterations() const override
+      {
+        return n_systems;
       }
 
       /** Iterations are those of the linear systems. */
@@ -102,6 +108,7 @@ namespace PeriDeal
             // No more than what the last step wants.
             const double wanted = std::max(share * now, 0.3 * options.tolerance * scale);
             n_iterations += solver.solve(0., 1., change, residual, wanted / options.tolerance);
+            ++n_systems;
             search(u, t);
           }
         return n_iterations;
@@ -162,6 +169,7 @@ namespace PeriDeal
       const StaticOptions options;
       LinearSolver        solver;
       Vector              residual, change, start;
+      unsigned int        n_systems = 0; // solved so far
     };
   } // namespace
 

@@ -312,6 +312,12 @@ namespace PeriDeal
     if (!breaking.any)
       return;
     op.unbalanced(memory.unbalanced, u, t);
+    if (options.softens && !breaks.control)
+      {
+        const double too_much = work_of_forces.counted_too_much(before.state, u, memory.unbalanced);
+        so_far.work -= too_much;
+        so_far.dissipated -= too_much;
+      }
     work_of_forces.begin(memory.unbalanced, t);
   }
 

@@ -3,6 +3,7 @@
 """Bonds that soften: half-notched beams against an independent cohesive model, stopped and resumed, on several processes, in motion, and what is refused.
 
     softening.py beams      largest forces, energies, another step
+    softening.py glue       what an interface takes up that opens, by its own bonds and beside it, and in steps of another length
     softening.py eccentric  a beam that cracks beside its middle, against a measured force
     softening.py zone       the same beams as finite elements with a zone that follows
     softening.py controlled loads that go back: a bar with snap-back against its closed form, brittle bonds, on several processes (resumed: resume.py)
@@ -62,6 +63,23 @@ def beams():
         check(energy["dissipated"] > 0.2 * energy["work"], f"energy dissipated: {energy['dissipated']} of {energy['work']}")
     halved = run_scene(BEAM, beam(0.05, 18, Time_Time_step="0.0125"))
     table.add("the same, steps half as long", largest_force(halved), first, relative=0.01)
+    table.show()
+
+
+def glue():
+    """A bar between two planes of symmetry whose interface has two thirds of its strength. Where the bar is far stronger only bonds across it soften."""
+    table = Comparison("glued bar pulled apart, energy dissipated over that of the glue")
+    energy, strength, height = 0.1432, 2.6, 10
+    bar = {"Domain/Upper corner": f"30, {height}", "Domain/Cells": "30, 10", "Material/Softening": "exponential", "Material/Fracture energy": "0.1432", "Material/Phases/Regions": "left: 15.000001 - x",
+           "Material/Interfaces": f"left/elsewhere: fracture energy {energy}, tensile strength {strength}", "Boundary conditions/Displacement": f"left: 0, free ; right: {12 * energy / strength}*t^2, free",
+           "Elasticity/Breaking": "auto", "Time/End time": "1", "Time/Time step": "0.01", "Output/Fields": "none", "Output/Probes": "", "Output/Write at": ""}
+    stronger = {"Material/Tensile strength": "78", "Material/Fracture energy": "60"}
+    state_based = {"Elasticity/Model": "state-based", "Material/Poisson ratio": "0.2"}
+    for what, more, bound in (("crossing bonds alone", stronger, 0.005), ("all", {}, 0.01), ("crossing bonds alone, state-based", {**stronger, **state_based}, 0.01), ("all, state-based", state_based, 0.02),
+                              ("crossing bonds alone, m = 4", {**stronger, "Peridynamics/Horizon ratio": "4"}, 0.005), ("steps half as long", {**stronger, "Time/Time step": "0.005"}, 0.005)):
+        run = run_scene("prm/fracture/snap_back.prm", {**bar, **more})
+        table.add(what, run.total("energy dissipated", PD) / height / energy, 1, absolute=bound)
+        check_less(abs(run.total("force on right in x", PD)), 1e-2 * strength * height, f"{what}: the force at the end")
     table.show()
 
 
@@ -176,4 +194,4 @@ def refusals():
 
 
 if __name__ == "__main__":
-    run_parts(beams, eccentric, zone, controlled, resume, refusals, zones=zones)
+    run_parts(beams, glue, eccentric, zone, controlled, resume, refusals, zones=zones)

@@ -35,6 +35,13 @@ namespace PeriDeal
      */
     double step(const Vector &from, const Vector &to, const Vector &unbalanced, const double t);
 
+    /**
+     * What step() has counted too much (below 0: too little) where the supports' forces at its end
+     * have become those of @p unbalanced little by little as it went on, and not at its end: half
+     * of what they lost times their way. begin() is still to be called. Collective.
+     */
+    double counted_too_much(const Vector &from, const Vector &to, const Vector &unbalanced) const;
+
     /** What the next step depends on. Collective. */
     void exchange(Archive &archive, const NodeKeys &keys);
 

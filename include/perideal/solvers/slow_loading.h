@@ -194,6 +194,12 @@ namespace PeriDeal
       return counts.iterations;
     }
 
+    /** StaticSolver::n_newton_iterations(). */
+    unsigned int n_newton_iterations() const
+    {
+      return solver->n_newton_iterations();
+    }
+
   private:
     /** A step that is divided where no equilibrium is found at its end. */
     struct Division

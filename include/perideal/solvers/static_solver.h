@@ -26,6 +26,7 @@ namespace PeriDeal
     double control_share = 0.;
     // The law is not asked for a step back to no displacement, in which forces are no loads.
     bool remembers = false;
+    bool softens   = false; // bonds lose their force little by little, while a step goes on
   };
 
 
@@ -46,6 +47,12 @@ namespace PeriDeal
      *             start
      */
     virtual unsigned int solve(Vector &u, const double t, const double size = 0.) = 0;
+
+    /** Linear systems that Newton's method has solved in all; 0: another method. Not collective. */
+    virtual unsigned int n_newton_iterations() const
+    {
+      return 0;
+    }
 
     /** K is no longer that of the last solution. Not collective. */
     virtual void operator_changed() {}
