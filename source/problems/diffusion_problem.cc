@@ -332,9 +332,10 @@ namespace PeriDeal
   {
     Timings::Scope scope(this->timings, "stepper");
     with_formulas(this->dofs().get_communicator(), [&] {
-      stepper = PeriDeal::make_stepper(stepper_of_run(scene, op(), scene.output.write_times),
-                                       op(),
-                                       this->stepper_options());
+      stepper = PeriDeal::make_stepper(
+        stepper_of_run(scene, op(), scene.output.all_times(scene.time.end_time)),
+        op(),
+        this->stepper_options());
     });
     check_stepper(stepper->name(), scene.time, op().spectrum().sharp * scene.time.end_time);
     if (scene.guards.goes_on())

@@ -7,13 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace PeriDeal
 {
   namespace
   {
     constexpr double       time_slack   = 1e-12;
-    constexpr unsigned int max_n_writes = 100000;
+    constexpr unsigned int max_n_writes = 100000, max_n_rows = 1000000; // of fields, of tables
     constexpr unsigned int max_n_points = 1000000;
   } // namespace
 
@@ -86,6 +87,8 @@ namespace PeriDeal
       "Times of output, separated by commas; steps land on them. The end time is always written.";
     declare("Write every", EntryType::text, "", "time") =
       "Time between two outputs, instead of Write at. Fields are written at t = 0, too, for films.";
+    declare("Totals every", EntryType::text, "", "time") =
+      "Time between two rows of totals.csv and probes.csv, which then are written more often than fields; steps land on these times, too.";
     declare("Probes", EntryType::list, "", "length") =
       "Points whose values go to probes.csv, separated by `;`.";
     declare("Line", EntryType::list, "", "length, length, 1") =
@@ -120,20 +123,67 @@ namespace PeriDeal
         write_times.push_back(std::min(time, end_time));
       }
     if (!every.empty())
-      {
-        const double step = parse_number(every, where("Write every"));
-        refuse(!(step > 0.), "Write every", "found " + every + ", needs a number greater than 0.");
-        if (end_time / step > max_n_writes)
-          error("Write every",
-                "found " + every + ", which gives more than " + std::to_string(max_n_writes) +
-                  " outputs until 'End time' (" + number_text(end_time) + ").");
-        // the end time itself is written anyway
-        for (unsigned int k = 1; k * step < end_time * (1. - 1e-9); ++k)
-          write_times.push_back(k * step);
-      }
+      write_times = times_of("Write every", max_n_writes, end_time);
     std::sort(times_beyond_end.begin(), times_beyond_end.end());
     std::sort(write_times.begin(), write_times.end());
     write_times.erase(std::unique(write_times.begin(), write_times.end()), write_times.end());
+  }
+
+
+  template <int dim>
+  void OutputControl<dim>::parse_times_of_tables(const double end_time, const bool steady)
+  {
+    times_of_tables.clear();
+    if (text("Totals every").empty())
+      return;
+    refuse(
+      steady,
+      "Totals every",
+      "is given, but the scene is steady ('Steady' in section 'Time', or an elastic equilibrium): there are no times to write at.");
+    const double same = 1e-9 * end_time; // times that are one but for round-off
+    for (const double t : times_of("Totals every", max_n_rows, end_time))
+      {
+        const auto next       = std::lower_bound(write_times.begin(), write_times.end(), t);
+        const bool is_written = (next != write_times.end() && *next - t < same) ||
+                                (next != write_times.begin() && t - *(next - 1) < same);
+        if (!is_written)
+          times_of_tables.push_back(t);
+      }
+  }
+
+
+  template <int dim>
+  std::vector<double> OutputControl<dim>::times_of(const std::string &entry,
+                                                   const unsigned int most,
+                                                   const double       end_time) const
+  {
+    const std::string &every = text(entry);
+    const double       step  = parse_number(every, where(entry));
+    refuse(!(step > 0.), entry, "found " + every + ", needs a number greater than 0.");
+    if (end_time / step > most)
+      error(entry,
+            "found " + every + ", which gives more than " + std::to_string(most) +
+              " outputs until 'End time' (" + number_text(end_time) + ").");
+    std::vector<double> times;
+    // the end time itself is written anyway
+    for (unsigned int k = 1; k * step < end_time * (1. - 1e-9); ++k)
+      times.push_back(k * step);
+    return times;
+  }
+
+
+  template <int dim>
+  std::vector<double> OutputControl<dim>::all_times(const double end_time) const
+  {
+    std::vector<double> times;
+    std::merge(write_times.begin(),
+               write_times.end(),
+               times_of_tables.begin(),
+               times_of_tables.end(),
+               std::back_inserter(times));
+    if (times.empty() || times.back() < end_time)
+      times.push_back(end_time);
+    return times;
   }
 
 
@@ -187,6 +237,7 @@ namespace PeriDeal
         refuse(format == 2 && formats.size() > 1, "Fields", "'none' stands alone.");
       }
     parse_write_times(end_time, steady);
+    parse_times_of_tables(end_time, steady);
     parse_points_of_output();
   }
 

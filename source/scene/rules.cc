@@ -619,6 +619,8 @@ namespace PeriDeal
       const bool is_box = scene.domain.shape == Shape::box;
       if (scene.domain.is_image())
         return "images ('Shape' in section 'Domain')";
+      if (!scene.output.times_of_tables.empty())
+        return "tables that are written more often than fields ('Totals every' in section 'Output'; 'Write every' is for both)";
       if (scene.accuracy.measures_growth() && scene.deforms && !moves)
         return obstacle_to_growth(scene);
       if (!is_box && scene.peridynamics.horizon > 0.)

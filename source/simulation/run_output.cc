@@ -88,10 +88,10 @@ namespace PeriDeal
 
 
   template <int dim>
-  void RunOutput<dim>::write_points(const double t, const ExactSolution *exact)
+  void RunOutput<dim>::write_points(const double t, const ExactSolution *exact, const bool all)
   {
     for (PointOutput &output : outputs)
-      if (!output.points.empty())
+      if (!output.points.empty() && (all || output.entry == "Probes"))
         write(output, t, exact);
   }
 

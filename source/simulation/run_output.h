@@ -113,8 +113,11 @@ namespace PeriDeal
     /** Notes on what of the line lies outside the body, or nothing. */
     std::vector<std::string> gaps_in_line() const;
 
-    /** @param exact what is known of the solution, as of another model; or nullptr */
-    void write_points(const double t, const ExactSolution *exact);
+    /**
+     * @param exact what is known of the solution, as of another model; or nullptr
+     * @param all   else probes alone
+     */
+    void write_points(const double t, const ExactSolution *exact, const bool all = true);
 
     /** @param more fields, by the name of the model */
     void write_fields(const double t, const std::map<std::string, OutputField> &more = {});

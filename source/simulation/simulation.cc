@@ -90,10 +90,7 @@ namespace PeriDeal
   {
     if (scene.time.steady)
       return {0.};
-    std::vector<double> times = scene.output.write_times;
-    if (times.empty() || times.back() < scene.time.end_time)
-      times.push_back(scene.time.end_time);
-    return times;
+    return scene.output.all_times(scene.time.end_time);
   }
 
 
@@ -352,10 +349,14 @@ namespace PeriDeal
     adaptation.readers_fit = true;
     if (!tells_at_stops()) // refuses what is not finite before it is written
       add_totals(t);
-    with_formulas(communicator, [&] { output->write_points(t, exact.get()); });
-    add_errors(t);
-    compare_models(reported(), scene.domain, t, *record);
-    write_fields(t);
+    const bool shows = scene.output.writes_fields_at(t);
+    with_formulas(communicator, [&] { output->write_points(t, exact.get(), shows); });
+    if (shows)
+      {
+        add_errors(t);
+        compare_models(reported(), scene.domain, t, *record);
+        write_fields(t);
+      }
     end_output(t);
   }
 
@@ -434,8 +435,10 @@ namespace PeriDeal
   std::pair<unsigned int, unsigned int> Simulation<dim>::count_stops() const
   {
     std::pair<unsigned int, unsigned int> counts = {place.stop, 0};
-    const std::vector<double>             times  = output_times();
-    for (unsigned int k = 0; tells_at_stops() && k < times.size(); ++k)
+    if (!tells_at_stops()) // of which there may be very many
+      return counts;
+    const std::vector<double> times = output_times();
+    for (unsigned int k = 0; k < times.size(); ++k)
       {
         const unsigned int n =
           stops_between<dim>(problems, k > 0 ? times[k - 1] : 0., times[k]).size();

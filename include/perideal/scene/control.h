@@ -9,6 +9,7 @@
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,8 @@ namespace PeriDeal
     bool vtu = true, hdf5 = true;
     std::vector<double>
       write_times; // sorted, without the end time unless given; from `Write at` and `Write every`
-    std::vector<double>              times_beyond_end; // of `Write at`, which are not written
+    std::vector<double> times_beyond_end; // of `Write at`, which are not written
+    std::vector<double> times_of_tables; // rows alone: of `Totals every`, no write_times among them
     std::vector<std::vector<double>> probes;
     std::vector<std::vector<double>> line; // the points of the line, evenly spaced, ends included
     std::vector<std::vector<double>> grid; // from make_grid()
@@ -63,6 +65,15 @@ namespace PeriDeal
      * aside.
      */
     void parse(const double end_time, const bool steady);
+
+    /** Sorted: all at which something is written, with the end time. */
+    std::vector<double> all_times(const double end_time) const;
+
+    /** Of those: fields are written, and not totals and probes alone. */
+    bool writes_fields_at(const double t) const
+    {
+      return !std::binary_search(times_of_tables.begin(), times_of_tables.end(), t);
+    }
 
     /** Fields are written at t = 0, too, as the first frame of a film: with `Write every`. */
     bool starts_at_zero() const;
@@ -77,6 +88,12 @@ namespace PeriDeal
 
   private:
     void parse_write_times(const double end_time, const bool steady);
+    void parse_times_of_tables(const double end_time, const bool steady);
+
+    /** The multiples of an entry below the end time. Throws UserError where they are too many. */
+    std::vector<double> times_of(const std::string &entry,
+                                 const unsigned int most,
+                                 const double       end_time) const;
 
     void parse_points_of_output();
   };
