@@ -150,7 +150,7 @@ namespace PeriDeal
 
   template <int dim>
   dealii::types::boundary_id BoundaryConditions<dim>::side_id(const std::string &name,
-                                                              const std::string &entry,
+                                                              const std::string &at,
                                                               const bool         or_part)
   {
     for (const Part &part : parts)
@@ -161,14 +161,15 @@ namespace PeriDeal
       id = *of_mesh;
     else if (!box_sides && name.find_first_not_of("0123456789") == std::string::npos &&
              (physical_names.empty() || name == "0")) // a side without a group has the number 0
-      id = parse_whole_number(name, where(entry), first_part_id - 1);
+      id = parse_whole_number(name, at, first_part_id - 1);
     else
       {
         const std::vector<std::string> names = side_names();
         const auto                     found = std::find(names.begin(), names.end(), name);
         if (found == names.end() || !box_sides)
-          error(entry,
-                unknown_side(name, names, physical_names, or_part ? parts : std::vector<Part>()));
+          entry_error(
+            at,
+            unknown_side(name, names, physical_names, or_part ? parts : std::vector<Part>()));
         id = name == "hole" ? hole_boundary_id : static_cast<unsigned int>(found - names.begin());
       }
     used_names.try_emplace(id, name);
@@ -202,7 +203,7 @@ namespace PeriDeal
         part.name        = name;
         part.id          = first_part_id + parts.size();
         if (part.kind == Part::of_side)
-          part.side = side_id(side, entry, false);
+          part.side = side_id(side, where(entry), false);
         parts.push_back(part);
       }
   }
@@ -232,7 +233,7 @@ namespace PeriDeal
       {
         const auto [name, value] = name_and_value(piece, where(entry));
         Condition condition;
-        condition.id   = side_id(name, entry);
+        condition.id   = side_id(name, where(entry));
         condition.name = name_of(condition.id);
         if (find_condition(list, condition.id) != nullptr)
           error(entry, "the side '" + condition.name + "' is named twice.");
@@ -251,7 +252,7 @@ namespace PeriDeal
       for (const std::string &given : split_list(piece, ','))
         {
           const std::string                name = unquoted(given);
-          const dealii::types::boundary_id id   = side_id(name, "Symmetry");
+          const dealii::types::boundary_id id   = side_id(name, where("Symmetry"));
           if (part(id) != nullptr)
             error(
               "Symmetry",

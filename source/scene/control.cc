@@ -89,6 +89,9 @@ namespace PeriDeal
       "Time between two outputs, instead of Write at. Fields are written at t = 0, too, for films.";
     declare("Totals every", EntryType::text, "", "time") =
       "Time between two rows of totals.csv and probes.csv, which then are written more often than fields; steps land on these times, too.";
+    declare("Quantities", EntryType::list) =
+      "Rows of totals.csv: `name: max FIELD`, or min, mean or sum (the integral), several separated by `;`. Of the whole body, or `on SIDE` (or a part), `over region FORMULA` (where it is > 0), `over PHASE`: `tip: max uy on right ; zone: mean von_mises over region x - 0.9`. "
+      "Fields are those of the files; of vectors the magnitude, with _x, _y, _z a component (ux, uy, uz of displacements). `max` and `min` tell their place, too.";
     declare("Probes", EntryType::list, "", "length") =
       "Points whose values go to probes.csv, separated by `;`.";
     declare("Line", EntryType::list, "", "length, length, 1") =

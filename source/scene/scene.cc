@@ -193,7 +193,7 @@ namespace PeriDeal
   void Scene<dim>::parse_and_validate()
   {
     general.parse();
-    general.dimension    = dim;
+    general.dimension = dim;
     formulas.parse(domain.files.folder, domain.files.communicator);
     const bool has_holes = domain.text("Shape") == "plate with hole" ||
                            !domain.text("Holes").empty();
@@ -239,6 +239,17 @@ namespace PeriDeal
     solver.parse();
     // an elastic body may not be steady, though it is said to be: its solver says so
     output.parse(time.end_time, this->deforms ? rests : time.steady);
+    output.quantities = parse_quantities(
+      output.text("Quantities"),
+      output.where("Quantities"),
+      material.phases.all().names,
+      [&](const std::string &name) {
+        const auto id   = boundary_conditions.side_id(name, output.where("Quantities"));
+        const auto part = boundary_conditions.part(id);
+        if (part != nullptr && part->kind == Part::point)
+          entry_error(output.where("Quantities"), "'" + name + "' is a point; use 'Probes'.");
+        return id;
+      });
     checkpoint.parse(time.end_time, this->deforms ? rests : time.steady);
     guards.parse();
     accuracy.parse();

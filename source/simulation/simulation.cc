@@ -11,6 +11,7 @@
 #include <perideal/problems/check_sides.h>
 #include <perideal/problems/computable.h>
 #include <perideal/problems/problem_factory.h>
+#include <perideal/problems/quantities.h>
 #include <perideal/problems/result_record.h>
 #include <perideal/problems/run_context.h>
 #include <perideal/scene/expression.h>
@@ -271,6 +272,11 @@ namespace PeriDeal
     const bool at_stops = tells_at_stops();
     if (at_stops)
       add_totals(0.);
+    else // what is wrong with them is to be told before steps are taken
+      with_formulas(communicator, [&] {
+        ResultRecord of_start;
+        add_quantities(reported(), 0., of_start);
+      });
     if (scene.output.starts_at_zero())
       write_fields(0.);
     if (at_stops)
@@ -311,6 +317,7 @@ namespace PeriDeal
         problem->add_totals(t, context());
         guards->look_at_totals(*problem, t);
       }
+    with_formulas(communicator, [&] { add_quantities(reported(), t, *record); });
   }
 
 

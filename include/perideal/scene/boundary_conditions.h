@@ -134,6 +134,13 @@ namespace PeriDeal
     bool transfers_fix_level() const;
 
     /**
+     * The number of a side or part. @param at entry and section for messages. Throws UserError.
+     */
+    dealii::types::boundary_id side_id(const std::string &name,
+                                       const std::string &at,
+                                       const bool         or_part = true);
+
+    /**
      * The first given value that holds at a place on a side, on the whole side or on a part of it;
      * or nullptr.
      */
@@ -197,10 +204,6 @@ namespace PeriDeal
   private:
     /** The names of sides that there are, without those of parts and numbers. */
     std::vector<std::string> side_names() const;
-
-    dealii::types::boundary_id side_id(const std::string &name,
-                                       const std::string &entry,
-                                       const bool         or_part = true);
 
     void parse_parts();
 

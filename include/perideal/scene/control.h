@@ -7,6 +7,7 @@
 
 #include <perideal/scene/choices.h>
 #include <perideal/scene/physics.h>
+#include <perideal/scene/quantities.h>
 #include <perideal/scene/section.h>
 
 #include <algorithm>
@@ -56,6 +57,7 @@ namespace PeriDeal
       write_times; // sorted, without the end time unless given; from `Write at` and `Write every`
     std::vector<double> times_beyond_end; // of `Write at`, which are not written
     std::vector<double> times_of_tables; // rows alone: of `Totals every`, no write_times among them
+    std::vector<Quantity>            quantities; // set by Scene, which knows sides and phases
     std::vector<std::vector<double>> probes;
     std::vector<std::vector<double>> line; // the points of the line, evenly spaced, ends included
     std::vector<std::vector<double>> grid; // from make_grid()
