@@ -131,7 +131,7 @@ namespace PeriDeal
     expect_fault(fault(steady + "set Lamp = left: 2, 1\nend\n"),
                  "Time",
                  "Steady",
-                 {"'Dirichlet' or 'Convection' or 'Contact layer' (section"});
+                 {"'Dirichlet' or 'Convection' or 'Radiation' or 'Contact layer' (section"});
     expect_fault(fault(bc, "Contact layer = left: 2, 1"),
                  bc,
                  "Contact layer",

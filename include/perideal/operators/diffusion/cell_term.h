@@ -133,6 +133,11 @@ namespace PeriDeal
 
     void fill();
 
+    /** Make the matrix what it is without what tangents add to it (LoadTangents), and with it. */
+    void take_tangents_away();
+    void add_tangents();
+    void add_tangents_to(dealii::TrilinosWrappers::SparseMatrix &sum) const;
+
     /** Mend cells and bonds; the rows that differ are in the memory of events. Collective. */
     void mend(const ChangeSet<dim> &change, const std::vector<dealii::BoundingBox<dim>> &joins);
     void add_changes(const std::vector<Cell>                       &changed,
@@ -144,7 +149,7 @@ namespace PeriDeal
     const std::unique_ptr<BondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     const std::shared_ptr<const HangingNodes<dim>>  hanging;
     const std::vector<ContactPair>                  contact; // of cracks in the mesh
-    const std::shared_ptr<const HeatLoads<dim>>     loads;
+    const std::shared_ptr<HeatLoads<dim>>           loads;
     CellMaterial<dim>                               cell_material;
     const std::shared_ptr<ElementConstraints<dim>>  constraints;
     const std::shared_ptr<CellCapacity<dim>>        capacity;

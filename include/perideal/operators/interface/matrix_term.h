@@ -49,6 +49,10 @@ namespace PeriDeal
 
     dealii::TrilinosWrappers::SparseMatrix matrix;
 
+  protected:
+    /** For terms of which a part is renewed often: the matrix without that part. */
+    dealii::TrilinosWrappers::SparseMatrix without_renewed;
+
   private:
     /** Rows by local numbers. */
     struct Kept
