@@ -130,14 +130,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  bool BoundaryConditions<dim>::transfers_depend_on_temperature() const
-  {
-    const auto is_curved = std::mem_fn(&SurfaceTransfer::depends_on_temperature);
-    return std::any_of(transfers.begin(), transfers.end(), is_curved);
-  }
-
-
-  template <int dim>
   bool BoundaryConditions<dim>::transfers_fix_level() const
   {
     const auto fixes = std::mem_fn(&SurfaceTransfer::fixes_level);

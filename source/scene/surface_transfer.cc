@@ -226,6 +226,14 @@ namespace PeriDeal
   }
 
 
+  bool depend_on_temperature(const std::vector<SurfaceTransfer> &transfers)
+  {
+    return std::any_of(transfers.begin(),
+                       transfers.end(),
+                       std::mem_fn(&SurfaceTransfer::depends_on_temperature));
+  }
+
+
   std::string entries_that_fix_level()
   {
     std::string entries = "'Dirichlet'";

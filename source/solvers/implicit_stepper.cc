@@ -97,8 +97,8 @@ namespace PeriDeal
                                       const double  t,
                                       Vector       &U)
   {
-    // Picard iterations if the material depends on the solution, which is taken at the last iterate,
-    // and Newton's for sides and sources.
+    // Picard iterations if the material depends on the solution, which is taken at the last
+    // iterate, and Newton's for sides and sources.
     constexpr unsigned int most = 60;
     const double           goal = std::max(1e-4 * tolerance, 1e-14); // above round-off
     chord.start();

@@ -133,9 +133,6 @@ namespace PeriDeal
     /** Some flux or ambient value changes with time. */
     bool transfers_depend_on_time() const;
 
-    /** Some transfer is no line in the temperature. */
-    bool transfers_depend_on_temperature() const;
-
     /** Some transfer determines a steady state. */
     bool transfers_fix_level() const;
 

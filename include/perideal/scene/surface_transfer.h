@@ -122,7 +122,7 @@ namespace PeriDeal
                       const double              undershoot = 0.) const;
 
   private:
-    /** sigma ((r - z)^4 - (u - z)^4); an odd function of u - z, which rounding may make negative. */
+    /** sigma ((r - z)^4 - (u - z)^4), odd in u - z, which may become negative on the way. */
     template <int dim>
     double black_flux(const dealii::Point<dim> &p, const double t, const double u) const
     {
@@ -138,6 +138,9 @@ namespace PeriDeal
 
     bool is_curved = false;
   };
+
+  /** Some transfer is no line in the temperature. */
+  bool depend_on_temperature(const std::vector<SurfaceTransfer> &transfers);
 
   /** For messages: entries that fix the level of the solution, "'Dirichlet' or 'Convection'". */
   std::string entries_that_fix_level();

@@ -215,7 +215,10 @@ namespace PeriDeal
       add_pair(this->matrix, pair);
     this->matrix.compress(VectorOperation::add);
     if (loads->depends_on_solution())
-      add_tangents();
+      {
+        this->keep_matrix();
+        add_tangents(this->matrix);
+      }
     if (apart())
       this->keep_rows(*layout);
     capacity->compress();
@@ -223,24 +226,7 @@ namespace PeriDeal
 
 
   template <int dim>
-  void CellTerm<dim>::take_tangents_away()
-  {
-    // Not by subtraction: digits must not depend on how many tangents there have been.
-    if (loads->depends_on_solution())
-      this->matrix.copy_from(this->without_renewed);
-  }
-
-
-  template <int dim>
-  void CellTerm<dim>::add_tangents()
-  {
-    this->without_renewed.copy_from(this->matrix);
-    add_tangents_to(this->matrix);
-  }
-
-
-  template <int dim>
-  void CellTerm<dim>::add_tangents_to(TrilinosWrappers::SparseMatrix &sum) const
+  void CellTerm<dim>::add_tangents(TrilinosWrappers::SparseMatrix &sum) const
   {
     const unsigned int                   n = dofs.get_fe().n_dofs_per_cell();
     FullMatrix<double>                   of_cell(n, n);
@@ -341,8 +327,8 @@ namespace PeriDeal
   {
     if (!body.material.depends_on_temperature())
       {
-        take_tangents_away();
-        add_tangents_to(this->matrix);
+        this->restore_matrix();
+        add_tangents(this->matrix);
         if (apart())
           this->keep_rows(*capacity->lumped().get_partitioner());
         return;
@@ -386,7 +372,8 @@ namespace PeriDeal
   template <int dim>
   void CellTerm<dim>::mend(const ChangeSet<dim> &change, const std::vector<BoundingBox<dim>> &joins)
   {
-    take_tangents_away();
+    if (loads->depends_on_solution())
+      this->restore_matrix();
     const auto  &layout = *capacity->lumped().get_partitioner();
     const auto  &cuts   = change.cuts;
     const bool   scaled = !crack_factors.empty();
@@ -428,7 +415,10 @@ namespace PeriDeal
       zone_bonds->add_changes(nodes, old_rows, this->matrix, event->touched);
     this->matrix.compress(VectorOperation::add);
     if (loads->depends_on_solution())
-      add_tangents();
+      {
+        this->keep_matrix();
+        add_tangents(this->matrix);
+      }
     if (apart())
       {
         zone_bonds->change_form(nodes, event->touched);
@@ -578,7 +568,7 @@ namespace PeriDeal
       add_pair(matrix, pair);
     matrix.compress(VectorOperation::add);
     if (loads->depends_on_solution())
-      add_tangents_to(matrix);
+      add_tangents(matrix);
   }
 
 

@@ -131,16 +131,6 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FieldOperator<dim>::take_curved_rows()
-  {
-    const auto &rows = parts.loads->curved_rows();
-    const auto  sums = take_rows(parts, rows, stiffness_diagonal);
-    bounds.set(std::max(rate_elsewhere, largest_rate(parts, rows, sums)));
-    parts.values->mask(stiffness_diagonal, 1.);
-  }
-
-
-  template <int dim>
   void FieldOperator<dim>::multiply(Vector &y, const Vector &u, const double t) const
   {
     double entered = 0.;
@@ -299,9 +289,14 @@ namespace PeriDeal
     for (const auto &term : parts.terms)
       term->take_material_at(u);
     if (body.material.depends_on_temperature())
-      take_all_rows(RowsOfK::After::new_temperatures);
-    else
-      take_curved_rows();
+      {
+        take_all_rows(RowsOfK::After::new_temperatures);
+        return;
+      }
+    const auto &rows = parts.loads->curved_rows();
+    const auto  sums = take_rows(parts, rows, stiffness_diagonal);
+    bounds.set(std::max(rate_elsewhere, largest_rate(parts, rows, sums)));
+    parts.values->mask(stiffness_diagonal, 1.);
   }
 
 

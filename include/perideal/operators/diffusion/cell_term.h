@@ -133,10 +133,8 @@ namespace PeriDeal
 
     void fill();
 
-    /** Make the matrix what it is without what tangents add to it (LoadTangents), and with it. */
-    void take_tangents_away();
-    void add_tangents();
-    void add_tangents_to(dealii::TrilinosWrappers::SparseMatrix &sum) const;
+    /** What sources and sides add to the matrix that are no lines in u (LoadTangents). */
+    void add_tangents(dealii::TrilinosWrappers::SparseMatrix &sum) const;
 
     /** Mend cells and bonds; the rows that differ are in the memory of events. Collective. */
     void mend(const ChangeSet<dim> &change, const std::vector<dealii::BoundingBox<dim>> &joins);

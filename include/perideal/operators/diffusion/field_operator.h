@@ -136,7 +136,6 @@ namespace PeriDeal
   private:
     bool apply_change(const ChangeSet<dim> &change);
     void take_all_rows(const RowsOfK::After after);
-    void take_curved_rows();
 
     const BodyParameters<dim> &body;
     FieldParts<dim>            parts;

@@ -26,7 +26,7 @@ namespace PeriDeal
   public:
     LoadTangents(const BoundaryConditions<dim> &conditions, const Expression &source)
       : source(source)
-      , is_any(source.depends_on_temperature() || conditions.transfers_depend_on_temperature())
+      , is_any(source.depends_on_temperature() || depend_on_temperature(conditions.transfers))
     {}
 
     /** Something is no line. */
