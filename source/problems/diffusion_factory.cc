@@ -45,8 +45,8 @@ namespace PeriDeal
           return transfer.fixes_level();
         }))
       notes.push_back(
-        "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
-        "needs 'side: 0' there).");
+        "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' by a formula without T (an insulated side "
+        "needs 'side: 0' there, and what depends on T enters as with 'natural').");
   }
 
 

@@ -84,13 +84,13 @@ def slab():
         for model in run.summary["models"]:
             found = run.probe(model, END)
             if expected is None:  # the surface is that of bonds: their balance, and about the same temperature
-                table.add(f"{what}: {model}", found, surface(1000, 200, 0.8, 293.15), relative=3e-2)  # measured: 1.9e-2 and less
+                table.add(f"{what}: {model}", found, surface(1000, 200, 0.8, 293.15), relative=3e-2)  # measured: 2.9e-3, and 2.2e-2 without the families' other half
             else:
-                table.add(f"{what}: {model}", found, expected, relative=1e-8 if model == FE else 1e-6)
+                table.add(f"{what}: {model}", found, expected, relative=1e-10)
             flow = run.model(model)["boundary flux"]
             side = "face" if "face" in flow else "right"
             if what == "radiation":
-                table.add(f"{model}: heat", flow[side], -200 * (1000 - expected) * 0.05, relative=1e-6)
+                table.add(f"{model}: heat", flow[side], -200 * (1000 - expected) * 0.05, relative=1e-10)
             check_less(abs(run.model(model)["heat balance"]["imbalance"]), 1e-8 * abs(flow[side]) + 1e-8, f"{what}, {model}: imbalance")
             check_less(run.model(model)["iterations"], 1300, f"{what}, {model}: iterations")
     table.show()
@@ -102,10 +102,9 @@ def lumped():
     body = {"Material/Conductivity": "1e3", BC + "Dirichlet": "", BC + "Radiation": "right: 0.8, 0; left: 0.8, 0; top: 0.8, 0; bottom: 0.8, 0",
             "Initial and source/Initial value": "1000", "Domain/Upper corner": "0.01, 0.01", "Domain/Cells": "6, 6", "Coupling/Zone": "0.003 - abs(x - 0.005)",
             "Output/Probes": "0.005,0.005", "Time/End time": "60", "Time/Tolerance": "1e-5", "Output/Write at": "20"}
-    # The surface is colder than the mean by about the Biot number: none of it in the content of heat.
     rate = 3 * 0.8 * SIGMA * 4 / 0.01 / (7800 * 500)
-    # The surface is colder than the mean, and radiates less, by the square root of two thirds of
-    # q a/k of half a width a: 4e-4 and less of T.
+    # The surface is colder than the mean by a third of the Biot number or so, e sigma T^3 a/k with
+    # half a width a: 1e-4 of T, and ten times that with the smaller k.
     expected = {t: (1000.0 ** -3 + rate * t) ** (-1 / 3) for t in (20, 60)}
     for stepper in ("auto", "rkc2", "euler", "rk4", "sdirk2", "bdf2", "crank nicolson"):
         run = run_scene(PLATE, {**QUIET, **body, "Time/Stepper": stepper, **({"Material/Conductivity": "100"} if stepper in ("euler", "rk4") else {})})
@@ -131,22 +130,22 @@ def benchmarks():
     table = Comparison("NAFEMS heat benchmarks")
     t2 = run_scene(BAR, {**QUIET, **STEADY, BC + "Dirichlet": "left: 1000", BC + "Radiation": "right: 0.98, 300", "Initial and source/Initial value": "300"})
     for model in (FE, PD, COUPLED):
-        table.add(f"T2, {model}: K", t2.probe(model, (0.1,)), 927.0, absolute=0.05)
-    t3 = run_scene(BAR, {**QUIET, "Material/Conductivity": "35", "Material/Density": "7200", "Material/Heat capacity": "440.5", BC + "Dirichlet": "left: 0; right: 100*sin(pi*t/40)",
+        table.add(f"T2, {model}: K", t2.probe(model, (0.1,)), 927.0, absolute=0.01)
+    t3 = run_scene(BAR, {**QUIET, "Domain/Cells": "80", "Material/Conductivity": "35", "Material/Density": "7200", "Material/Heat capacity": "440.5", BC + "Dirichlet": "left: 0; right: 100*sin(pi*t/40)",
                          "Time/End time": "32", "Output/Probes": "0.08"})
     for model in (FE, PD, COUPLED):
-        table.add(f"T3, {model}: C", t3.probe(model, (0.08,)), 36.60, absolute=0.15)
+        table.add(f"T3, {model}: C", t3.probe(model, (0.08,)), 36.60, absolute=0.05)
     t4 = run_scene(PLATE, {**QUIET, **STEADY, "Domain/Upper corner": "0.6, 1", "Domain/Cells": "48, 80", "Material/Conductivity": "52", BC + "Dirichlet": "bottom: 100",
                            BC + "Radiation": "", BC + "Convection": "right: 750, 0; top: 750, 0", "Output/Probes": "0.6,0.2", "Coupling/Zone": "0.1 - abs(x - 0.3)"})
     for model in (FE, PD, COUPLED):
-        table.add(f"T4, {model}: C", t4.probe(model, (0.6, 0.2)), 18.25, absolute=0.1)
+        table.add(f"T4, {model}: C", t4.probe(model, (0.6, 0.2)), 18.25, absolute=0.011)
     table.show()
 
 
 def formulas():
     """A flux a - b T is a convection; a source -m^2 k T makes T a cosh; one that grows with T makes it a cosine; a table of T; a coefficient of T, an ambient value of T."""
     table = Comparison("Functions of T")
-    pairs = ((STEADY, 1e-12), ({"Time/End time": "100", "Time/Tolerance": "1e-6"}, 2e-5), ({"Time/Stepper": "sdirk2", "Time/Time step": "5"}, 1e-9))
+    pairs = ((STEADY, 1e-12), ({"Time/End time": "100", "Time/Tolerance": "1e-6"}, 4e-7), ({"Time/Stepper": "sdirk2", "Time/Time step": "5"}, 1e-9))
     for more, bound in pairs:
         runs = [run_scene(PLATE, {**QUIET, BC + "Radiation": "", "Domain/Cells": "16, 8", **more, **other, BC + "Dirichlet": "left: 1000*(1 + 10*y)"})
                 for other in ({BC + "Flux": "right: (1 + 20*y)*(2e4 - 50*T)"}, {BC + "Convection": "right: 50*(1 + 20*y), 400"},
@@ -164,11 +163,11 @@ def formulas():
     decay = run_scene(BAR, {**QUIET, "Material/Density": "2", "Material/Heat capacity": "3", "Initial and source/Source": "12 - 6*T", "Initial and source/Initial value": "5",
                             "Time/Tolerance": "1e-6"})
     for model in (FE, PD, COUPLED):
-        table.add_limit(f"source -m^2 T, {model}: relative error of cosh", run.error(model), 1e-3)
-        table.add_limit(f"source m^2 T, {model}: relative error of cos", growing.error(model), 1e-3)
+        table.add_limit(f"source -m^2 T, {model}: relative error of cosh", run.error(model), 4.6e-5)
+        table.add_limit(f"source m^2 T, {model}: relative error of cos", growing.error(model), 2.2e-5)
         table.add(f"source 12 - 6 T, {model}: at 1", decay.probe(model, (0.1,)), 2 + 3 * math.exp(-1), relative=1e-5)
         # The integral of the source in space: -m^2 T' at the end.
-        table.add(f"source -m^2 T, {model}: heat through the end", run.model(model)["boundary flux"]["right"], m * math.tanh(m * 0.1), relative=2e-3)
+        table.add(f"source -m^2 T, {model}: heat through the end", run.model(model)["boundary flux"]["right"], m * math.tanh(m * 0.1), relative=3e-5)
     table_of_q = write_file("q.csv", "T,q\n0,5e4\n500,2e4\n2000,-7e4\n")
     tabled = run_scene(PLATE, {**QUIET, **STEADY, BC + "Radiation": "", BC + "Flux": "right: factor*q(T)", "Formulas/Tables": "q: " + table_of_q, "Formulas/Constants": "factor: 2"})
     for model in (FE, PD, COUPLED):
@@ -185,20 +184,26 @@ def around():
                                                       "Output/Probes": "", "Output/Line": "", "Units/Length": "m", "Domain/Cells": "40, 40", "Peridynamics/Boundary treatment": "auto"})
     fluxes = [hole.model(model)["boundary flux"]["hole"] for model in hole.summary["models"]]
     check(fluxes[0] < -100, f"the hole radiates: {fluxes}")
-    table.add("hole: heat, peridynamics against finite elements", fluxes[1], fluxes[0], relative=2e-2)
+    table.add("hole: heat, peridynamics against finite elements", fluxes[1], fluxes[0], relative=1.2e-3)  # measured: 7.7e-4
+    ring = run_scene("prm/heat/gmsh_plate.prm", {**QUIET, BC + "Dirichlet": "1: 800", BC + "Radiation": "2: 0.9, 20", "Material/Conductivity": "20", "Output/Probes": "1.41421,1.41421",
+                                                 "Output/Line": "", "Reference/Solution": "", "Solver/Tolerance": "1e-12"})
+    # A ring from 1 to 2: what is conducted, k (T1 - T2)/(2 ln 2) per area outside, is radiated.
+    outside = root(lambda T: 20 * (T - 800) / (2 * math.log(2)) + 0.9 * SIGMA * ((T + 273.15) ** 4 - 293.15 ** 4), 0, 800)
+    for model, bound in ((FE, 2e-3), (PD, 2e-2)):
+        table.add(f"mesh from a file, {model}: T outside", ring.probe(model, (1.41421, 1.41421)), outside, relative=bound)
     cracked = {"Cracks/Segments": "0.052,0.01 ; 0.052,0.04", "Coupling/Zone": "cracks: 1", BC + "Parts": "half: right if y < 0.02", BC + "Radiation": "half: 0.8, 300 ; top: 0.5, 280 + t",
                "Material/Heat capacity": "400 + 0.3*T", "Time/End time": "200", "Initial and source/Initial value": "900"}
     run = run_scene(PLATE, {**QUIET, **cracked})
     for model in run.summary["models"]:
         heat = run.model(model)["heat balance"]["cumulative"]
         check_less(abs(heat["imbalance"]), 1e-4 * abs(heat["stored"]) + 1e-4 * abs(heat["entered"]) , f"cracked plate, {model}: heat lost")
-        table.add(f"cracked plate, {model}: T at the end", run.probe(model, END), run.probe(FE, END), relative=1e-3)
+        table.add(f"cracked plate, {model}: T at the end", run.probe(model, END), run.probe(FE, END), relative=6e-5)
     growing = {**cracked, "Material/Heat capacity": "500", "Cracks/Growth": "2: 10, 0, 1e-4, 60"}
     whole = run_scene(PLATE, {**QUIET, **growing})
     for model in whole.summary["models"]:
         heat = whole.model(model)["heat balance"]["cumulative"]
         check_less(abs(heat["imbalance"]), 1e-4 * abs(heat["entered"]), f"growing crack, {model}: heat lost")
-        table.add(f"growing crack, {model}: T at the end", whole.probe(model, END), whole.probe(FE, END), relative=1e-3)
+        table.add(f"growing crack, {model}: T at the end", whole.probe(model, END), whole.probe(FE, END), relative=2.3e-4)
     table.show()
 
 
