@@ -486,6 +486,9 @@ namespace PeriDeal
       return "the body is a solid";
     if (body.material.conductivity.depends_on_temperature())
       return "'Conductivity' depends on the solution";
+    if (body.initial_and_source.source.depends_on_temperature() ||
+        depend_on_temperature(body.boundary_conditions.transfers))
+      return "what enters through sides or in the body depends on the solution";
     for (const Part &part : body.boundary_conditions.parts)
       if (body.boundary_conditions.side_of(part.id) == numbers::invalid_boundary_id)
         return "there are conditions in regions or at points";

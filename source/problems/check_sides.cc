@@ -264,24 +264,20 @@ namespace PeriDeal
     }
 
 
-    /** What is wrong with a coefficient at a point, or nothing. */
+    /** What is wrong with what a transfer's formulas give at the start, or nothing. */
     template <int dim>
-    std::string negative_coefficient(const SurfaceTransfer &transfer, const Point<dim> &p)
+    std::string fault_of(const SurfaceTransfer &transfer,
+                         const Expression      &initial_value,
+                         const Point<dim>      &p)
     {
       try
         {
-          if (transfer.coefficient.value(p) >= 0.)
-            return "";
+          return transfer.fault(p, 0., initial_value.value(p));
         }
       catch (const UserError &error) // of a formula that is no number here, on this process alone
         {
           return error.message();
         }
-      std::ostringstream message;
-      message << "'" << transfer.kind->entry << "' in section 'Boundary conditions', side '"
-              << transfer.name << "': the coefficient '" << transfer.coefficient.text()
-              << "' is negative at (" << p << "). It has to be 0 or more on the whole side.";
-      return message.str();
     }
 
 
@@ -289,6 +285,7 @@ namespace PeriDeal
     template <int dim>
     std::set<types::boundary_id> sides_of(const Scene<dim> &scene, const Triangulation<dim> &mesh)
     {
+      const auto                  &conditions = scene.boundary_conditions;
       std::set<types::boundary_id> present;
       std::string                  message;
       for (const auto &cell : mesh.active_cell_iterators())
@@ -298,9 +295,11 @@ namespace PeriDeal
               {
                 const auto id = cell->face(f)->boundary_id();
                 present.insert(id);
-                for (const SurfaceTransfer &transfer : scene.boundary_conditions.transfers)
-                  if (transfer.id == id && message.empty())
-                    message = negative_coefficient<dim>(transfer, cell->face(f)->center());
+                const auto p = cell->face(f)->center();
+                for (const SurfaceTransfer &transfer : conditions.transfers)
+                  if (conditions.side_of(transfer.id) == id && message.empty() &&
+                      conditions.holds_at(transfer.id, p))
+                    message = fault_of<dim>(transfer, scene.initial_and_source.initial_value, p);
               }
       throw_on_all_if_any(mesh.get_communicator(), message);
       present = Utilities::MPI::compute_set_union(present, mesh.get_communicator());

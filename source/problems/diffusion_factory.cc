@@ -45,8 +45,8 @@ namespace PeriDeal
           return transfer.fixes_level();
         }))
       notes.push_back(
-        "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' (an insulated side "
-        "needs 'side: 0' there).");
+        "'Flux treatment' in section 'Peridynamics' has no effect: no side is named in 'Flux' by a formula without T (an insulated side "
+        "needs 'side: 0' there, and what depends on T enters as with 'natural').");
   }
 
 
@@ -85,7 +85,7 @@ namespace PeriDeal
       const Expression  &source = scene.initial_and_source.source;
       const unsigned int n      = static_cast<unsigned int>(
         std::min(16., std::pow(most_points / mesh.n_global_active_cells(), 1. / dim)));
-      if (source.is_constant() || n < 4)
+      if (source.is_constant() || source.depends_on_temperature() || n < 4)
         return;
       double     whole = 0., seen = 0.;
       const bool bonds_alone = !runs(scene, ModelKind::finite_elements) &&

@@ -313,7 +313,7 @@ namespace PeriDeal
       field.op().initialize_vector(field.solution);
       field.set_initial_value(field.solution);
       field.op().distribute(field.solution, 0.);
-      field.op().take_material_at(field.solution); // with the prescribed values
+      field.op().take_material_at(field.solution, 0.); // with the prescribed values
       field.op().distribute(field.solution, 0.);
     }
   } // namespace
@@ -455,6 +455,7 @@ namespace PeriDeal
   {
     rebuild(t);
     ledger.add(body.move_solution(t, steady));
+    with_formulas(this->dofs().get_communicator(), [&] { op().take_material_at(solution, t); });
   }
 
 
@@ -588,7 +589,8 @@ namespace PeriDeal
           op().update(t);
       });
     if (archive.loads() && op().depends_on_solution())
-      with_formulas(this->dofs().get_communicator(), [&] { op().take_material_at(solution); });
+      with_formulas(this->dofs().get_communicator(),
+                    [&] { op().take_material_at(solution, reached); });
     op().exchange(archive, keys);
   }
 

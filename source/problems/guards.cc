@@ -471,7 +471,7 @@ namespace PeriDeal
       {
         Vector at(u);
         op.distribute(at, trip.time);
-        op.take_material_at(at);
+        op.take_material_at(at, trip.time);
       }
     const double step  = stepper.current_step(),
                  limit = stable_step(stepper.name(), op.spectrum().sharp);

@@ -348,7 +348,7 @@ namespace PeriDeal
       for (const SideCondition &c : conditions.dirichlet)
         add(c.name, "temperature " + c.value.text());
       for (const SurfaceTransfer &c : conditions.transfers)
-        add(c.name, (c.fixes_level() ? "" : "heat ") + c.text());
+        add(c.name, (c.kind->fixes_level ? "" : "heat ") + c.text());
       return sides;
     }
 

@@ -16,7 +16,8 @@ namespace PeriDeal
     /** As many formulas as there are names, separated by commas. */
     std::vector<Expression> parse_formulas(const std::string              &text,
                                            const std::vector<std::string> &names,
-                                           const std::string              &where)
+                                           const std::string              &where,
+                                           const bool                      with_temperature)
     {
       const std::vector<std::string> pieces = split_list(text, ',');
       if (const std::size_t n = names.size(); pieces.size() != n)
@@ -28,7 +29,9 @@ namespace PeriDeal
       for (std::size_t k = 0; k < pieces.size(); ++k)
         formulas.emplace_back(pieces[k],
                               where,
-                              names[k] == "coefficient" ? "x, y, z" : "x, y, z, t");
+                              std::string(names[k] == "coefficient" ? "x, y, z" : "x, y, z, t") +
+                                (with_temperature ? ", T" : ""),
+                              with_temperature);
       return formulas;
     }
 
@@ -311,8 +314,11 @@ namespace PeriDeal
           of != nullptr && of->kind != Part::of_side && transfer.fixes_level())
         error(transfer.kind->entry,
               "the part '" + transfer.name +
-                "' is no part of a side and has no area that a coefficient could refer to. Use "
-                "'Flux' (the power that enters there in all), or a part 'SIDE if FORMULA'.");
+                (transfer.kind->fixes_level ?
+                   "' is no part of a side and has no area that a coefficient could refer to. Use "
+                   "'Flux' (the power that enters there in all), or a part 'SIDE if FORMULA'." :
+                   "' is no part of a side, and what enters there may not depend on T. Use a part "
+                   "'SIDE if FORMULA', or 'Source' in section 'Initial and source'."));
   }
 
 
@@ -330,14 +336,15 @@ namespace PeriDeal
     dirichlet = parse_list<SideCondition>(
       "Dirichlet",
       [](SideCondition &condition, const std::string &text, const std::string &at) {
-        condition.value = parse_formulas(text, {"value"}, at)[0];
+        condition.value = parse_formulas(text, {"value"}, at, false)[0];
       });
     transfers.clear();
     for (const TransferKind &kind : transfer_kinds())
       for (const SurfaceTransfer &transfer : parse_list<SurfaceTransfer>(
              kind.entry,
              [&](SurfaceTransfer &read, const std::string &text, const std::string &at) {
-               read.set(kind, parse_formulas(text, kind.formulas, at), at);
+               read.absolute_zero = absolute_zero;
+               read.set(kind, parse_formulas(text, kind.formulas, at, true), at);
              }))
         transfers.push_back(transfer);
     displacement.clear();
@@ -370,7 +377,15 @@ namespace PeriDeal
     };
     only_diffusion("Dirichlet", "'Displacement'");
     for (const TransferKind &kind : transfer_kinds())
-      only_diffusion(kind.entry, kind.fixes_level ? "'Displacement' or 'Traction'" : "'Traction'");
+      {
+        only_diffusion(kind.entry,
+                       kind.fixes_level ? "'Displacement' or 'Traction'" : "'Traction'");
+        refuse(kind.only_of_heat && physics != Physics::heat && physics != Physics::elasticity &&
+                 is_given(kind.entry),
+               kind.entry,
+               "is for 'Physics = heat'; 'Physics' is '" + names_of(physics).physics +
+                 "'. Use 'Flux', whose formula may depend on the unknown as T.");
+      }
     for (const auto &[entry, remedy] :
          {std::make_pair("Displacement", "'Dirichlet'"),
           std::make_pair("Velocity", "'Dirichlet'"),

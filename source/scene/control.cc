@@ -462,6 +462,9 @@ namespace PeriDeal
     declare(length, "Length", "m")           = "Name of the unit of length." + label;
     declare(time, "Time", "s")               = "Name of the unit of time." + label;
     declare(temperature, "Temperature", "K") = "Name of the unit of temperature." + label;
+    declare("Absolute zero", EntryType::text, "", "temperature") =
+      "Of `Radiation` and `Heat of deformation`, a number: absolute zero on the scale of the temperatures of the scene, 0 in kelvins, -273.15 in degrees Celsius. "
+      "Empty: -273.15 where `Temperature` is `C`, `degC` or `°C`, else 0.";
     declare(potential, "Potential", "V") = "Name of the unit of the electric potential." + label;
     declare(force, "Force", "N") =
       "Name of the unit of force, from which those of stresses, energies and stress intensities follow." +
@@ -472,6 +475,27 @@ namespace PeriDeal
       label;
     declare(mass, "Mass", "kg")      = "Name of the unit of the mass of moisture." + label;
     declare(current, "Current", "A") = "Name of the unit of electric current." + label;
+  }
+
+
+  bool Units::counts_in_celsius() const
+  {
+    return temperature == "C" || temperature == "degC" || temperature == "°C";
+  }
+
+
+  bool Units::knows_absolute_zero() const
+  {
+    return is_given("Absolute zero") || counts_in_celsius();
+  }
+
+
+  double Units::absolute_zero() const
+  {
+    constexpr double in_celsius = -273.15;
+    if (is_given("Absolute zero"))
+      return parse_number(text("Absolute zero"), where("Absolute zero"));
+    return counts_in_celsius() ? in_celsius : 0.;
   }
 
 

@@ -37,11 +37,9 @@ namespace PeriDeal
       "With `Temperature change = computed` that changes in time: the part of its heat that a bond still conducts once it has broken, from 0 (nothing) to 1 (as before).";
     declare("Heat of deformation", EntryType::boolean, "false") =
       "With `Temperature change = computed` that changes in time: a body that expands cools, one that is compressed warms, by the source -T0 beta d(theta)/dt of heat per volume, "
-      "with theta the trace of the strain in three dimensions, beta = 3 K alpha of bulk modulus and `Thermal expansion`, and T0 = `Reference temperature` - `Absolute zero`. "
+      "with theta the trace of the strain in three dimensions, beta = 3 K alpha of bulk modulus and `Thermal expansion`, and T0 = `Reference temperature` - `Absolute zero` (section `Units`). "
       "Moduli, and `Density` times `Heat capacity` (at constant strain), need the same unit of energy. Heat and equilibrium agree at each `Time step`, at each hundredth of "
       "`End time` where none is given, and where results are written.";
-    declare("Absolute zero", EntryType::text, "", "temperature") =
-      "With `Heat of deformation = true`, a number: absolute zero on the scale of the temperatures of the scene, 0 in kelvins, -273.15 in degrees Celsius.";
     declare("Contact", EntryType::choice, "auto", "", {"auto", "true", "false"}) =
       "Faces of cracks press on each other, without friction, where they close: those of section `Cracks` and those that breaking bonds have left. `auto` does so wherever it can: in "
       "peridynamics, and in `coupled` with `Scheme = exchange`, with `Kinematics = linear`; and with `Kinematics = full` in peridynamics in motion with `Stepper = verlet`, "
@@ -116,7 +114,6 @@ namespace PeriDeal
              entry,
              "has no effect: 'Temperature change' is '" + text("Temperature change") +
                "'. Use 'Temperature change = computed', or leave the entry out.");
-    parse_heat_of_deformation();
     refuse(dim != 2 && is_given("Plane"),
            "Plane",
            "found '" + text("Plane") + "', but 'Dimension' is " + std::to_string(dim) +
@@ -165,15 +162,11 @@ namespace PeriDeal
   }
 
 
-  void ElasticityControl::parse_heat_of_deformation()
+  void ElasticityControl::take_absolute_zero(const Units &units)
   {
-    const std::string entry = "Heat of deformation", &zero = text("Absolute zero");
+    const std::string entry = "Heat of deformation";
     absolute_reference.reset();
-    const bool wanted = text(entry) == "true";
-    refuse(!wanted && !zero.empty(),
-           "Absolute zero",
-           "has no effect without 'Heat of deformation = true'. Leave one of them out.");
-    if (!wanted)
+    if (text(entry) != "true")
       return;
     refuse(
       !computes_temperature,
@@ -181,14 +174,16 @@ namespace PeriDeal
       "found 'true', but 'Temperature change' is '" + text("Temperature change") +
         "', which nothing warms. Use 'Temperature change = computed', or leave the entry out.");
     refuse(
-      zero.empty(),
+      !units.knows_absolute_zero(),
       entry,
-      "found 'true', which needs 'Absolute zero' in the same section: 0 where the temperatures of the scene are in kelvins, -273.15 in degrees Celsius.");
-    absolute_reference = reference_temperature - parse_number(zero, where("Absolute zero"));
-    refuse(
+      "found 'true', which needs 'Absolute zero' in section 'Units': 0 where the temperatures of the scene are in kelvins, -273.15 in degrees Celsius.");
+    const double zero  = units.absolute_zero();
+    absolute_reference = reference_temperature - zero;
+    units.refuse(
       !(*absolute_reference > 0.),
       "Absolute zero",
-      "found " + zero + ", but 'Reference temperature' is " + text("Reference temperature") +
+      "is " + number_text(zero) + ", but 'Reference temperature' in section 'Elasticity' is " +
+        text("Reference temperature") +
         ", not above it: their difference is the absolute temperature of the unstressed body, which 'Heat of deformation' multiplies.");
   }
 } // namespace PeriDeal

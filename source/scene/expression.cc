@@ -431,6 +431,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  double Expression::slope(const dealii::Point<dim> &p,
+                           const double              t,
+                           const double              temperature) const
+  {
+    if (!depends_on_temperature())
+      return 0.;
+    const double here = value(p, t, temperature); // and an error if it is none
+    const double step = 1e-5 * std::max(std::abs(temperature), 1.);
+    double       ends[2];
+    for (const int side : {0, 1})
+      {
+        compiled->T = temperature + (side == 0 ? -step : step);
+        ends[side]  = compiled->value();
+      }
+    const bool   below = std::isfinite(ends[0]), above = std::isfinite(ends[1]);
+    const double width = step * ((below ? 1. : 0.) + (above ? 1. : 0.));
+    return width > 0. ? ((above ? ends[1] : here) - (below ? ends[0] : here)) / width : 0.;
+  }
+
+
+  template <int dim>
   void Expression::not_finite(const dealii::Point<dim> &p,
                               const double              t,
                               const double              temperature) const
@@ -578,6 +599,8 @@ namespace PeriDeal
 
 #define PERIDEAL_TEMPLATES(dim)                                                                  \
   template double Expression::value<dim>(const dealii::Point<dim> &, const double, const double) \
+    const;                                                                                       \
+  template double Expression::slope<dim>(const dealii::Point<dim> &, const double, const double) \
     const;
   PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
 #undef PERIDEAL_TEMPLATES

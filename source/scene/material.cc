@@ -649,7 +649,7 @@ namespace PeriDeal
     declare("Initial value", EntryType::formula, "0", "temperature") =
       "Temperature at time 0, a number or a formula of x, y, z (t is 0).";
     declare("Source", EntryType::formula, "0", "power/length^3") =
-      "Heat produced in the body, a number or a formula of x, y, z, t.";
+      "Heat produced in the body, a number or a formula of x, y, z, t and the temperature T.";
     declare("Body force", EntryType::list, "", "force/length^3") =
       "Elasticity: force per volume, one formula of x, y, z, t per direction, separated by commas. Empty: none.";
     declare("Initial displacement", EntryType::list, "", "length") =
@@ -665,7 +665,7 @@ namespace PeriDeal
   void InitialAndSource::parse(const Physics physics, const unsigned int dim, const bool with_heat)
   {
     initial_value = Expression(text("Initial value"), where("Initial value"));
-    source        = Expression(text("Source"), where("Source"));
+    source        = Expression(text("Source"), where("Source"), "x, y, z, t, T", true);
     for (const auto &[entry, member] :
          {std::make_pair("Body force", &body_force),
           std::make_pair("Initial displacement", &initial_displacement),

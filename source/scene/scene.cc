@@ -186,6 +186,26 @@ namespace PeriDeal
         "found 'true', which with 'Kinematics = full' is for 'Stepper = verlet' only; 'Stepper' in section 'Time' is 'newmark'. Leave one of them out.");
       elasticity.contact = false;
     }
+
+
+    /** What radiates does so by a constant that has units. */
+    template <int dim>
+    void refuse_units_of_radiation(const Scene<dim> &scene)
+    {
+      const Units &units = scene.units;
+      const auto  &sides = scene.boundary_conditions.transfers;
+      if (std::none_of(sides.begin(), sides.end(), std::mem_fn(&SurfaceTransfer::radiates)))
+        return;
+      for (const auto &[entry, unit, known] : {std::make_tuple("Length", units.length, "m"),
+                                               std::make_tuple("Time", units.time, "s"),
+                                               std::make_tuple("Energy", units.energy, "J")})
+        units.refuse(
+          !unit.empty() && unit != known,
+          entry,
+          "is '" + unit + "', but 'Radiation' in section 'Boundary conditions' is for scenes in '" +
+            known +
+            "': the Stefan-Boltzmann constant is 5.670374419e-8 W/(m2 K4). Give 'Flux' with that in your units there, 'side: emissivity*sigma*(Ta^4 - T^4)'.");
+    }
   } // namespace
 
 
@@ -201,7 +221,9 @@ namespace PeriDeal
       domain.set("Rims", "fitted");
     domain.parse();
     const MeshGroups groups = take_groups_of_mesh(*this);
+    units.parse();
     elasticity.parse(general.physics, dim);
+    elasticity.take_absolute_zero(units);
     time.parse();
     take_times();
     if (elasticity.has_full_kinematics() && time.stepper == "newmark")
@@ -216,10 +238,12 @@ namespace PeriDeal
                    general.physics == Physics::elasticity ? !elasticity.is_static() : !time.steady);
     initial_and_source.parse(general.physics, dim, elasticity.computes_temperature);
     boundary_conditions.holes = domain.image || !domain.has_lattice() ? Holes<dim>() : domain.holes;
+    boundary_conditions.absolute_zero = units.absolute_zero();
     boundary_conditions.parse(domain.has_lattice(),
                               domain.has_voids(),
                               general.physics,
                               elasticity.computes_temperature);
+    refuse_units_of_radiation(*this);
     cracks.parse(general.physics);
     add_interfaces(*this, groups);
     peridynamics.parse(general.physics);
@@ -258,7 +282,6 @@ namespace PeriDeal
                      layers ? domain.extra.body_lower : domain.lower,
                      layers ? domain.extra.body_upper : domain.upper);
     reference.parse();
-    units.parse();
     validate();
   }
 

@@ -99,8 +99,8 @@ namespace PeriDeal
         AssertThrow(
           !op.depends_on_solution(),
           UserError(
-            "'Stepper = chebyshev' in section 'Time' needs a material that does not depend on the temperature (T in "
-            "section 'Material'). Use rkc2, sdirk2 or auto."));
+            "'Stepper = chebyshev' in section 'Time' needs a material, sides and sources that do not depend on the temperature (T in "
+            "section 'Material', 'Radiation'). Use rkc2, sdirk2 or auto."));
         AssertThrow(
           !op.depends_on_time(),
           UserError(

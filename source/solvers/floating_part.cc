@@ -125,7 +125,9 @@ namespace PeriDeal
   } // namespace
 
 
-  void check_no_floating_part(const Operator &op, const TrilinosWrappers::SparseMatrix &surrogate)
+  void check_no_floating_part(const Operator                       &op,
+                              const TrilinosWrappers::SparseMatrix &surrogate,
+                              const bool                            is_guess)
   {
     const Vector part         = number_parts(op, surrogate);
     const auto   communicator = part.get_mpi_communicator();
@@ -160,7 +162,10 @@ namespace PeriDeal
             ": cracks (section 'Cracks') have cut it off from all sides in " +
             entries_that_fix_level() +
             " (section 'Boundary conditions'). "
-            "Give one of its sides such a condition, shorten the cracks, or give them a 'Transmission'.";
+            "Give one of its sides such a condition, shorten the cracks, or give them a 'Transmission'." +
+            (is_guess ?
+               " Where what enters depends on the temperature, as T, it has to fall with T at the first guess: give another 'Initial value' (section 'Initial and source')." :
+               "");
         throw_on_all_if_any(communicator, message);
       }
   }

@@ -97,8 +97,8 @@ namespace PeriDeal
                                       const double  t,
                                       Vector       &U)
   {
-    // Picard iterations if the material depends on the solution: it is taken at the last
-    // iterate.
+    // Picard iterations if the material depends on the solution, which is taken at the last
+    // iterate, and Newton's for sides and sources.
     constexpr unsigned int most = 60;
     const double           goal = std::max(1e-4 * tolerance, 1e-14); // above round-off
     chord.start();
@@ -114,7 +114,7 @@ namespace PeriDeal
     std::ostringstream message;
     message
       << "'Stepper = " << method
-      << "' in section 'Time': the iterations for the material's dependence on the temperature (T in section 'Material') did not "
+      << "' in section 'Time': the iterations for the dependence on the temperature (T in section 'Material', in what enters through sides or in 'Source') did not "
          "converge in "
       << most << " rounds near t = " << t;
     if (fixed)
@@ -137,7 +137,7 @@ namespace PeriDeal
     op.distribute(U, t);
     if (op.depends_on_solution())
       {
-        op.take_material_at(U);
+        op.take_material_at(U, t);
         op.distribute(U, t);
         solver.operator_changed();
       }

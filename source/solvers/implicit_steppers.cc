@@ -207,7 +207,7 @@ namespace PeriDeal
         // rate in the start value.
         start = u;
         op.distribute(start, t);
-        op.take_material_at(start);
+        op.take_material_at(start, t);
         op.distribute(start, t);
         op.residual(load, start, t);
         const double entering = op.entering();

@@ -344,7 +344,8 @@ namespace PeriDeal
     for (const SurfaceTransfer &transfer : bc.transfers)
       for (const Expression &formula : transfer.formulas)
         refuse(formula, bc, transfer.kind->entry);
-    scene.time.refuse(bc.dirichlet.empty() && !bc.transfers_fix_level(),
+    scene.time.refuse(bc.dirichlet.empty() && !bc.transfers_fix_level() &&
+                        !scene.initial_and_source.source.depends_on_temperature(),
                       "Steady",
                       "without a side in " + entries_that_fix_level() +
                         " (section 'Boundary conditions') the steady state is not determined.");
@@ -366,15 +367,15 @@ namespace PeriDeal
     op.initialize_vector(rhs);
     op.initialize_vector(change);
     op.distribute(u, t);
-    op.take_material_at(u);
+    op.take_material_at(u, t);
     op.distribute(u, t);
     op.residual(rhs, u, t);
     LinearSolver solver(op, tolerance, max_iterations, direct_up_to);
-    check_no_floating_part(op, solver.surrogate());
+    check_no_floating_part(op, solver.surrogate(), op.depends_on_solution());
     unsigned int n_iterations = solver.solve(0., 1., change, rhs);
     u += change;
     op.distribute(u, t);
-    // Picard iterations if the material depends on the solution.
+    // Picard iterations if the material depends on the solution, Newton's for sides and sources.
     constexpr unsigned int most  = 200;
     const double           goal  = std::max(10. * tolerance, 1e-12);
     unsigned int           round = 0;
@@ -383,9 +384,9 @@ namespace PeriDeal
         AssertThrow(
           round < most,
           UserError(
-            "The iterations for the material's dependence on the temperature (T in section 'Material') did not "
+            "The iterations for the dependence on the temperature (T in section 'Material', in what enters through sides or in 'Source') did not "
             "converge in 200 rounds. Start nearer to the solution ('Initial value'), or compute the way there in time."));
-        op.take_material_at(u);
+        op.take_material_at(u, t);
         op.distribute(u, t);
         solver.operator_changed();
         op.residual(rhs, u, t);

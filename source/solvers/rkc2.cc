@@ -125,7 +125,7 @@ namespace PeriDeal
         if (!op.depends_on_solution())
           return;
         op.distribute(v, t);
-        op.take_material_at(v);
+        op.take_material_at(v, t);
         inverse = inverse_capacity(op);
       }
 

@@ -97,7 +97,7 @@ namespace PeriDeal
       {
         const double t = span.now;
         op.distribute(u, t);
-        op.take_material_at(u);
+        op.take_material_at(u, t);
         inverse = inverse_capacity(op);
         restart(); // the bound of this step
         const bool   lands = t + dt * (1. + 1e-10) >= span.end;
@@ -120,7 +120,7 @@ namespace PeriDeal
         op.distribute(u, span.end);
         if (op.depends_on_solution())
           {
-            op.take_material_at(u); // for what is written there
+            op.take_material_at(u, span.end); // for what is written there
             return;
           }
         check_finite(u, method, span.end);

@@ -406,8 +406,11 @@ namespace PeriDeal
       for (const SideCondition &condition : given.dirichlet)
         scan.see_condition(condition.id, condition.value, Jumps::matter);
       for (const SurfaceTransfer &transfer : given.transfers)
-        for (const Expression *const formula :
-             {&transfer.flux, &transfer.coefficient, &transfer.ambient})
+        for (const Expression *const formula : {&transfer.flux,
+                                                &transfer.coefficient,
+                                                &transfer.ambient,
+                                                &transfer.emissivity,
+                                                &transfer.surroundings})
           scan.see_condition(transfer.id, *formula, Jumps::do_not_matter);
       for (const auto *const list : {&given.displacement, &given.traction})
         for (const VectorCondition &condition : *list)

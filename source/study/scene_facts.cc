@@ -124,7 +124,10 @@ namespace PeriDeal
       {"moves", moves},
       {"steady", scene.time.steady},
       {"explicit steppers", explicit_stepper_names()},
-      {"depends on the solution", scene.material.depends_on_temperature()},
+      {"depends on the solution",
+       scene.material.depends_on_temperature() ||
+         scene.initial_and_source.source.depends_on_temperature() ||
+         depend_on_temperature(scene.boundary_conditions.transfers)},
       {"lumped", !scene.finite_elements.consistent_capacity},
       {"bonds", facts_of_bonds(scene)},
       {"exact solution", !scene.reference.solution.empty()},

@@ -129,7 +129,7 @@ namespace PeriDeal
        {"Boundary conditions/Dirichlet", "left: 1; right: 0"},
        {"Material/Conductivity", "1 + 2*T"}});
     StepperOptions options;
-    problem.op().take_material_at(problem.values([](const auto &) { return 0.; }));
+    problem.op().take_material_at(problem.values([](const auto &) { return 0.; }), 0.);
     options.time_step = 0.95 * stable_step("euler", problem.op().spectrum().sharp);
     for (const bool waits : {false, true})
       {

@@ -48,7 +48,7 @@ namespace PeriDeal
     {
       Vector u = problem.values(bumpy<dim>);
       problem.op().distribute(u, 0.);
-      problem.op().take_material_at(u);
+      problem.op().take_material_at(u, 0.);
       problem.op().distribute(u, 0.);
       const double before = problem.op().balance(u, 0., false).content;
       const auto   method = make_stepper(stepper, problem.op(), options);

@@ -75,7 +75,7 @@ namespace PeriDeal
       EXPECT_EQ(scene.output.write_times.size(), 3);
     }
     expect_elastic_faults(warm, R"(
-Time/Steady=true & Boundary conditions/Dirichlet= & Boundary conditions/Convection= => Time/Steady | without a side in 'Dirichlet' or 'Convection'
+Time/Steady=true & Boundary conditions/Dirichlet= & Boundary conditions/Convection= => Time/Steady | without a side in 'Dirichlet' or 'Convection' or 'Radiation'
 Time/Steady=true & Boundary conditions/Dirichlet=right: t => Boundary conditions/Dirichlet | depends on t
 Material/Conductivity=0 => Material/Conductivity | greater than 0
 Boundary conditions/Flux=right: 1 => Boundary conditions/Flux | 'Dirichlet' | contradicts

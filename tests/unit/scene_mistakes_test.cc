@@ -449,7 +449,7 @@ Models=coupled & Coupling/Zone=x - 0.5 & Coupling/Scheme=splice => 'Shape' | 'Sc
 )");
     expect_said(elastic_and({"Elasticity/Temperature change=computed",
                              "Elasticity/Heat of deformation=true",
-                             "Elasticity/Absolute zero=-273",
+                             "Units/Absolute zero=-273",
                              "Material/Thermal expansion=1e-3"}),
                 R"(
 Material/Heat capacity=1 + T => 'Heat of deformation' | 'Heat capacity' | not depend on T

@@ -120,6 +120,90 @@ namespace PeriDeal
   }
 
 
+  TEST_F(SurfaceTransfers, slopes)
+  {
+    HeatParameters<2> body;
+    auto             &sides = body.boundary_conditions;
+    const Expression  of_T("0.2 + 1e-4*T + 0*t", "", "", true),
+      flux("1e3 - exp(T/100)", "", "", true), roots("1e3*sqrt(T)", "", "", true);
+    sides.absolute_zero = -20.;
+    sides.let_in("Radiation", 0, {of_T, 400.});
+    sides.let_in("Flux", 1, {flux});
+    sides.let_in("Convection", 2, {of_T, roots});
+    const Point<2> p(0.3, 0.7);
+    for (const SurfaceTransfer &side : sides.transfers)
+      for (const double T : {10., 250., 900.})
+        {
+          const double d = 1e-3,
+                       growth =
+                         (side.entering(p, 0., T + d) - side.entering(p, 0., T - d)) / (2. * d);
+          EXPECT_TRUE(side.depends_on_temperature() && side.fixes_level());
+          EXPECT_NEAR(side.slope(p, 0., T, false), std::max(0., -growth), 1e-6 * std::abs(growth));
+        }
+    const double sigma = 5.670374419e-8;
+    EXPECT_NEAR(sides.transfers[0].slope(p, 0., -20., true), // of half of 420 K
+                0.198 * 4. * sigma * std::pow(210., 3) - 1e-4 * sigma * std::pow(420., 4),
+                1e-9);
+    EXPECT_EQ(sides.transfers[0].slope(p, 0., -20., false), 0.);
+    EXPECT_EQ(roots.slope(p, 0., 0.), roots.value(p, 0., 1e-5) / 1e-5); // on one side
+    EXPECT_EQ(sides.transfers[0].fault(p, 0., 30.), "");
+    expect_parts(sides.transfers[0].fault(p, 0., -21.),
+                 {"'Radiation'", "-21", "'Absolute zero'", "-20"});
+    EXPECT_EQ(sides.transfers[0].fault(p, 0., -21., 2.), "");
+    expect_parts(sides.transfers[0].fault(p, 0., 1e4),
+                 {"'Radiation'", "emissivity", "1.2", "from 0 to 1"});
+  }
+
+
+  /** K is the tangent of the residual, which at the temperatures that were taken is that of q. */
+  TEST_F(SurfaceTransfers, tangents)
+  {
+    const Settings plate{{"Domain/Cells", "9, 8"},
+                         {"Material/Conductivity", "2"},
+                         {bc + "/Parts", "half: top if x < 0.53"},
+                         {bc + "/Dirichlet", "left: 300"},
+                         {bc + "/Radiation", "right: 0.9, 400 + 10*t ; half: 0.3 + 1e-4*T, 200"},
+                         {bc + "/Flux", "bottom: -T^2/100 + x"},
+                         {"Initial and source/Source", "5 - T - 1e-3*T^2"}};
+    for (const auto &[model, more] :
+         {std::make_pair(ModelKind::finite_elements, Settings()),
+          std::make_pair(ModelKind::peridynamics, Settings()),
+          std::make_pair(ModelKind::coupled, Settings{{"Coupling/Zone", "x - 0.4"}})})
+      {
+        const Body body(plate + more, model);
+        const auto field = [](const double size) {
+          return [size](const Point<2> &p) { return 300. + size * p[0] * std::cos(3. * p[1]); };
+        };
+        const double t = 0.4, d = 1e-3;
+        const auto   residual = [&](const double size) {
+          Vector u = body.values(field(size));
+          body.op().distribute(u, t);
+          body.op().take_material_at(u, t);
+          return body.residual(u, t);
+        };
+        Vector       change = residual(50. + d);
+        const Vector before = residual(50. - d);
+        change -= before;
+        change /= -2. * d;
+        Vector direction =
+          body.values([](const Point<2> &p) { return p[0] * std::cos(3. * p[1]); });
+        body.op().distribute_homogeneous(direction);
+        residual(50.);
+        EXPECT_LT(largest_difference(body.product(direction), change), 1e-6 * change.linfty_norm());
+        // What has entered is what the balance of q says.
+        Vector u = body.values(field(50.));
+        body.op().distribute(u, t);
+        const Balance balance = body.op().balance(u, t, false);
+        body.residual(u, t);
+        double entering = balance.sources;
+        for (const auto &[name, value] : balance.sides)
+          entering += value;
+        EXPECT_NEAR(body.op().entering(), entering, 1e-9 * std::abs(balance.sources));
+        EXPECT_NEAR(balance.imbalance(), 0., 1e-9 * std::abs(balance.sources));
+      }
+  }
+
+
   TEST_F(SurfaceTransfers, checks)
   {
     const std::string steady = "subsection Time\nset Steady = true\nend\nsubsection " + bc + "\n";
@@ -131,7 +215,7 @@ namespace PeriDeal
     expect_fault(fault(steady + "set Lamp = left: 2, 1\nend\n"),
                  "Time",
                  "Steady",
-                 {"'Dirichlet' or 'Convection' or 'Contact layer' (section"});
+                 {"'Dirichlet' or 'Convection' or 'Radiation' or 'Contact layer' (section"});
     expect_fault(fault(bc, "Contact layer = left: 2, 1"),
                  bc,
                  "Contact layer",

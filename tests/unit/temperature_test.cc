@@ -107,7 +107,7 @@ namespace PeriDeal
           const Problem<2> problem(wall, model);
           const Vector     u    = advanced(problem, stepper, step);
           const double     heat = problem.op().balance(u, 0.05, false).sides.at("right");
-          problem.op().take_material_at(u);
+          problem.op().take_material_at(u, 0.);
           EXPECT_NEAR(problem.op().balance(u, 0.05, false).sides.at("right"),
                       heat,
                       1e-13 * std::abs(heat))
@@ -146,7 +146,7 @@ namespace PeriDeal
                    Settings{{"Initial and source/Initial value", "0.5*x + x*y"}},
                  model);
           Vector u = cold.values(temperature);
-          cold.op().take_material_at(u);
+          cold.op().take_material_at(u, 0.);
           Vector v = warm.values(temperature);
           cold.op().distribute(u, 0.);
           warm.op().distribute(v, 0.);

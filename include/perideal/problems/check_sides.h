@@ -16,8 +16,8 @@ namespace PeriDeal
 {
   /**
    * Throws UserError for a condition of section `Boundary conditions`, of whatever physics, on a
-   * side that the mesh does not have (the message names those that it has), and for a coefficient
-   * of convection that is negative somewhere. Collective.
+   * side that the mesh does not have (the message names those that it has), and for what formulas
+   * of sides may not give at the start (SurfaceTransfer::fault()). Collective.
    */
   template <int dim>
   void check_sides(const Scene<dim> &scene, const dealii::Triangulation<dim> &mesh);

@@ -69,6 +69,8 @@ namespace PeriDeal
     Holes<dim> holes;
     /** Names of a mesh file for its boundary ids. To be set before parse(). */
     MeshGroups::Numbers physical_names;
+    /** On the scale of the temperatures, for `Radiation`. To be set before parse(). */
+    double absolute_zero = 0.;
 
     /**
      * For programs: a value, or what enters by the kind with this entry (`Flux`, `Convection`, ...)
@@ -86,8 +88,9 @@ namespace PeriDeal
                 const std::vector<Expression>   &formulas)
     {
       SurfaceTransfer transfer;
-      transfer.name = name_of(id);
-      transfer.id   = id;
+      transfer.name          = name_of(id);
+      transfer.id            = id;
+      transfer.absolute_zero = absolute_zero;
       transfer.set(transfer_kind(entry), formulas, where(entry));
       transfers.push_back(transfer);
     }

@@ -220,5 +220,14 @@ namespace PeriDeal
 
     /** Of the unknown field. */
     std::string of_field(const Physics physics) const;
+
+    /** The absolute zero on the scale of the temperatures. Throws UserError. */
+    double absolute_zero() const;
+
+    /** `Absolute zero` is given, or follows from `Temperature`. */
+    bool knows_absolute_zero() const;
+
+  private:
+    bool counts_in_celsius() const;
   };
 } // namespace PeriDeal

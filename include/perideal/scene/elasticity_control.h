@@ -4,6 +4,7 @@
 #pragma once
 
 #include <perideal/scene/choices.h>
+#include <perideal/scene/control.h>
 #include <perideal/scene/expression.h>
 #include <perideal/scene/physics.h>
 #include <perideal/scene/section.h>
@@ -31,7 +32,7 @@ namespace PeriDeal
     double        dissipation_step;             // of `Breaking = controlled`, 0 to 1
     bool          contact = true;               // faces of cracks bear pressure where they can
     ElasticSolver solver;
-    /** Absolute temperature of the unstressed body, with `Heat of deformation` only. */
+    /** Absolute temperature of the unstressed body, of take_absolute_zero() only. */
     std::optional<double> absolute_reference;
 
     bool is_bond_based() const
@@ -90,15 +91,19 @@ namespace PeriDeal
     /**
      * Throws UserError: a `Micromodulus` of another model than `bond-based`, a `Plane` where there
      * is none, full kinematics by the linear solver or with `Contact = true`, `Breaking` of a body
-     * in motion, a temperature change that depends on t or is computed for a body in motion,
-     * `Heat of deformation` without a temperature that is computed or an `Absolute zero` below
-     * `Reference temperature`, and with another physics any entry that is given.
+     * in motion, a temperature change that depends on t or is computed for a body in motion, and
+     * with another physics any entry that is given.
      */
     void parse(const Physics physics = Physics::elasticity, const unsigned int dim = 2);
+
+    /**
+     * After parse(). Throws UserError: `Heat of deformation` without a temperature that is computed
+     * or an `Absolute zero` below `Reference temperature`.
+     */
+    void take_absolute_zero(const Units &units);
 
   private:
     void declare_breaking();
     void parse_breaking(const unsigned int dim) const;
-    void parse_heat_of_deformation();
   };
 } // namespace PeriDeal

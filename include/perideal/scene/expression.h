@@ -58,6 +58,13 @@ namespace PeriDeal
                  const double              t           = 0.,
                  const double              temperature = 0.) const;
 
+    /**
+     * The derivative with respect to T, by a difference over a hundred-thousandth of it: on both
+     * sides, or on one where the formula has no value on the other. 0 without T.
+     */
+    template <int dim>
+    double slope(const dealii::Point<dim> &p, const double t, const double temperature) const;
+
     /** No x, y, z, t or T in it. */
     bool is_constant() const;
 

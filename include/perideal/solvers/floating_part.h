@@ -13,10 +13,14 @@ namespace PeriDeal
    * sides. The message names one place in it and its number of unknowns.
    *
    * Parts are found on the graph of the surrogate matrix (nearest neighbours) and confirmed by the
-   * operator itself, which may have longer bonds between them. Collective.
+   * operator itself, which may have longer bonds between them.
+   * @param is_guess K is that of a guess of the solution on which it depends
+   *
+   * Collective.
    */
   void check_no_floating_part(const Operator                               &op,
-                              const dealii::TrilinosWrappers::SparseMatrix &surrogate);
+                              const dealii::TrilinosWrappers::SparseMatrix &surrogate,
+                              const bool                                    is_guess = false);
 
   /**
    * Throws UserError if a part of a body can move without a strain and the forces on it do work

@@ -128,11 +128,11 @@ namespace PeriDeal
                    nullptr)
     , hanging(std::make_shared<const HangingNodes<dim>>(dofs, *parts.layout))
     , contact(contact_pairs(dofs, body.cracks))
-    , loads(std::make_shared<const HeatLoads<dim>>(dofs,
-                                                   parts.layout,
-                                                   body.boundary_conditions,
-                                                   body.initial_and_source.source,
-                                                   *hanging))
+    , loads(std::make_shared<HeatLoads<dim>>(dofs,
+                                             parts.layout,
+                                             body.boundary_conditions,
+                                             body.initial_and_source.source,
+                                             *hanging))
     , cell_material(dofs, body.material, body.initial_and_source.initial_value, body.run.steady)
     , constraints(std::make_shared<ElementConstraints<dim>>(dofs,
                                                             *parts.layout,
@@ -164,7 +164,7 @@ namespace PeriDeal
     cells.cut().set(parts.history.pieces(parts.cracks_of),
                     parts.history.transmission(parts.cracks_of));
     TrilinosWrappers::SparsityPattern pattern = empty_pattern(dofs);
-    if (!apart())
+    if (!apart() || body.initial_and_source.source.depends_on_temperature())
       DoFTools::make_sparsity_pattern(dofs, pattern, hanging->constraints(), false);
     if (zone_bonds)
       zone_bonds->add_pattern(dofs, pattern);
@@ -214,9 +214,30 @@ namespace PeriDeal
     for (const ContactPair &pair : contact)
       add_pair(this->matrix, pair);
     this->matrix.compress(VectorOperation::add);
+    if (loads->depends_on_solution())
+      {
+        this->keep_matrix();
+        add_tangents(this->matrix);
+      }
     if (apart())
       this->keep_rows(*layout);
     capacity->compress();
+  }
+
+
+  template <int dim>
+  void CellTerm<dim>::add_tangents(TrilinosWrappers::SparseMatrix &sum) const
+  {
+    const unsigned int                   n = dofs.get_fe().n_dofs_per_cell();
+    FullMatrix<double>                   of_cell(n, n);
+    std::vector<types::global_dof_index> indices(n);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && loads->find_tangents(cell, of_cell))
+        {
+          cell->get_dof_indices(indices);
+          hanging->add_to(sum, of_cell, indices);
+        }
+    sum.compress(VectorOperation::add);
   }
 
 
@@ -304,6 +325,14 @@ namespace PeriDeal
   template <int dim>
   void CellTerm<dim>::take_material_at(const Vector &u)
   {
+    if (!body.material.depends_on_temperature())
+      {
+        this->restore_matrix();
+        add_tangents(this->matrix);
+        if (apart())
+          this->keep_rows(*capacity->lumped().get_partitioner());
+        return;
+      }
     cell_material.take(u);
     if (zone_bonds && body.material.conductivity.depends_on_temperature())
       zone_bonds->take_conductivities_at(cell_material.temperatures_taken());
@@ -343,6 +372,8 @@ namespace PeriDeal
   template <int dim>
   void CellTerm<dim>::mend(const ChangeSet<dim> &change, const std::vector<BoundingBox<dim>> &joins)
   {
+    if (loads->depends_on_solution())
+      this->restore_matrix();
     const auto  &layout = *capacity->lumped().get_partitioner();
     const auto  &cuts   = change.cuts;
     const bool   scaled = !crack_factors.empty();
@@ -383,6 +414,11 @@ namespace PeriDeal
     if (zone_bonds)
       zone_bonds->add_changes(nodes, old_rows, this->matrix, event->touched);
     this->matrix.compress(VectorOperation::add);
+    if (loads->depends_on_solution())
+      {
+        this->keep_matrix();
+        add_tangents(this->matrix);
+      }
     if (apart())
       {
         zone_bonds->change_form(nodes, event->touched);
@@ -531,6 +567,8 @@ namespace PeriDeal
     for (const ContactPair &pair : contact)
       add_pair(matrix, pair);
     matrix.compress(VectorOperation::add);
+    if (loads->depends_on_solution())
+      add_tangents(matrix);
   }
 
 

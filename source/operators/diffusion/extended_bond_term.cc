@@ -393,11 +393,11 @@ namespace PeriDeal
   {
     FieldParts<dim> parts(body);
     const auto      bonds = std::make_shared<ExtendedBondTerm<dim>>(nodes, body);
-    const auto loads = std::make_shared<const NodeLoads<dim>>(nodes, *bonds->constraints(), body);
-    parts.layout     = nodes.partitioner();
-    parts.capacity   = std::make_shared<NodeCapacity<dim>>(nodes, body);
-    parts.values     = bonds->constraints();
-    parts.loads      = loads;
+    const auto      loads = std::make_shared<NodeLoads<dim>>(nodes, *bonds->constraints(), body);
+    parts.layout          = nodes.partitioner();
+    parts.capacity        = std::make_shared<NodeCapacity<dim>>(nodes, body);
+    parts.values          = bonds->constraints();
+    parts.loads           = loads;
     bonds->take_bonds();
     parts.terms          = {bonds, std::make_shared<SideTerm<dim>>(*loads)};
     parts.for_each_place = [&nodes](const typename FieldParts<dim>::Visit &visit) {

@@ -76,6 +76,27 @@ namespace PeriDeal
           rate = std::max(rate, sums[k] / parts.capacity->lumped().local_element(rows[k]));
       return Utilities::MPI::max(rate, parts.layout->get_mpi_communicator());
     }
+
+
+    /** The same of the rows that are none of DiffusionLoads::curved_rows(). Collective. */
+    template <int dim>
+    double largest_rate_elsewhere(const FieldParts<dim>           &parts,
+                                  const std::vector<unsigned int> &rows,
+                                  const std::vector<double>       &sums)
+    {
+      if (!parts.loads->depends_on_solution())
+        return 0.;
+      const auto               &curved = parts.loads->curved_rows();
+      std::vector<unsigned int> others;
+      std::vector<double>       sums_there;
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        if (!std::binary_search(curved.begin(), curved.end(), rows[k]))
+          {
+            others.push_back(rows[k]);
+            sums_there.push_back(sums[k]);
+          }
+      return largest_rate(parts, others, sums_there);
+    }
   } // namespace
 
 
@@ -104,6 +125,7 @@ namespace PeriDeal
     for (const auto &term : parts.terms)
       term->require_held({after, all, sums, stiffness_diagonal, bounds.safe()});
     bounds.set(largest_rate(parts, all, sums));
+    rate_elsewhere = largest_rate_elsewhere(parts, all, sums);
     parts.values->mask(stiffness_diagonal, 1.);
   }
 
@@ -188,7 +210,8 @@ namespace PeriDeal
   bool FieldOperator<dim>::has_steady_state() const
   {
     const auto &conditions = body.boundary_conditions;
-    return parts.values->any() || conditions.transfers_fix_level() || !conditions.dirichlet.empty();
+    return parts.values->any() || conditions.transfers_fix_level() ||
+           !conditions.dirichlet.empty() || body.initial_and_source.source.depends_on_temperature();
   }
 
 
@@ -248,6 +271,7 @@ namespace PeriDeal
           });
         else
           bounds.set(std::max(safe, rate));
+        rate_elsewhere = std::max(rate_elsewhere, largest_rate_elsewhere(parts, rows, sums));
       }
     parts.values->mask(stiffness_diagonal, 1.);
     return true;
@@ -255,14 +279,24 @@ namespace PeriDeal
 
 
   template <int dim>
-  void FieldOperator<dim>::take_material_at(const Vector &u)
+  void FieldOperator<dim>::take_material_at(const Vector &u, const double t)
   {
     if (!depends_on_solution())
       return;
+    if (parts.loads->depends_on_solution())
+      parts.loads->take_at(u, t, body.run.steady);
     parts.capacity->take_at(u);
     for (const auto &term : parts.terms)
       term->take_material_at(u);
-    take_all_rows(RowsOfK::After::new_temperatures);
+    if (body.material.depends_on_temperature())
+      {
+        take_all_rows(RowsOfK::After::new_temperatures);
+        return;
+      }
+    const auto &rows = parts.loads->curved_rows();
+    const auto  sums = take_rows(parts, rows, stiffness_diagonal);
+    bounds.set(std::max(rate_elsewhere, largest_rate(parts, rows, sums)));
+    parts.values->mask(stiffness_diagonal, 1.);
   }
 
 

@@ -36,15 +36,22 @@ namespace PeriDeal
           else if (transfer.fixes_level() && !is_slave)
             relaxing.push_back({share.node,
                                 share.area,
-                                share.area * transfer.coefficient.value(place),
+                                transfer.depends_on_temperature() ?
+                                  0. :
+                                  share.area * transfer.coefficient.value(place),
                                 &transfer,
                                 place});
       }
     std::stable_sort(relaxing.begin(), relaxing.end(), [](const SideLoad &a, const SideLoad &b) {
       return a.node < b.node;
     });
-    for (const SideLoad &load : relaxing)
-      this->coefficients.emplace_back(load.node, load.coefficient);
+    if (this->tangents.of_source())
+      for_each_source([&](const unsigned int i) { this->curved.push_back(i); });
+    else
+      for (const SideLoad &load : relaxing)
+        if (load.is_curved() && (this->curved.empty() || this->curved.back() != load.node))
+          this->curved.push_back(load.node);
+    find_coefficients();
     if (!this->varies)
       this->find(0.);
   }
@@ -52,23 +59,62 @@ namespace PeriDeal
 
   template <int dim>
   template <typename Visit>
-  void NodeLoads<dim>::for_each_source(const double t, const Visit &visit) const
+  void NodeLoads<dim>::for_each_source(const Visit &visit) const
   {
     for (unsigned int i = 0; i < nodes.n_owned() && this->any_source; ++i)
       if (constraints.kind(i) != NodeConstraints<dim>::slave)
-        visit(i, nodes.volume(i) * this->source.value(nodes.position(i), t));
+        visit(i);
+  }
+
+
+  template <int dim>
+  void NodeLoads<dim>::find_coefficients()
+  {
+    const auto   &tangents = this->tangents;
+    const bool    known    = tangents.taken_at_all();
+    const Vector &T        = tangents.temperatures();
+    auto         &list     = this->coefficients;
+    list.clear();
+    for (SideLoad &load : relaxing)
+      {
+        if (load.is_curved())
+          load.coefficient =
+            known ?
+              load.area * tangents.slope(*load.transfer, load.place, T.local_element(load.node)) :
+              0.;
+        list.emplace_back(load.node, load.coefficient);
+      }
+    if (!known || !tangents.of_source())
+      return;
+    for_each_source([&](const unsigned int i) {
+      list.emplace_back(i, nodes.volume(i) * tangents.slope(nodes.position(i), T.local_element(i)));
+    });
+    std::stable_sort(list.begin(), list.end(), [](const auto &a, const auto &b) {
+      return a.first < b.first;
+    });
   }
 
 
   template <int dim>
   void NodeLoads<dim>::assemble(const double t) const
   {
-    Vector &f = this->loads;
-    for_each_source(t,
-                    [&](const unsigned int i, const double heat) { f.local_element(i) += heat; });
+    const auto   &tangents = this->tangents;
+    const bool    known    = tangents.taken_at_all();
+    const Vector &T        = tangents.temperatures();
+    const auto    at       = [&](const unsigned int i) { return known ? T.local_element(i) : 0.; };
+    Vector       &f        = this->loads;
+    if (known || !tangents.of_source())
+      for_each_source([&](const unsigned int i) {
+        f.local_element(i) += nodes.volume(i) * tangents.given(nodes.position(i), t, at(i));
+      });
     for (const auto *list : {&fluxes, &relaxing})
       for (const SideLoad &load : *list)
-        f.local_element(load.node) += load.entering(t, 0.);
+        if (!load.is_curved())
+          f.local_element(load.node) += load.entering(t, 0.);
+        else if (known)
+          f.local_element(load.node) +=
+            load.area * load.transfer->entering(load.place, t, at(load.node)) +
+            load.coefficient * at(load.node);
   }
 
 
@@ -85,10 +131,20 @@ namespace PeriDeal
   template <int dim>
   void NodeLoads<dim>::add_to(Balance &balance, const Vector &u, const double t) const
   {
+    const double undershoot = this->tangents.undershoot_of(u);
     for (const auto *list : {&fluxes, &relaxing, &of_slaves})
       for (const SideLoad &load : *list)
-        balance.sides[load.transfer->name] += load.entering(t, u.local_element(load.node));
-    for_each_source(t, [&](const unsigned int, const double heat) { balance.sources += heat; });
+        {
+          const double at = u.local_element(load.node);
+          balance.sides[load.transfer->name] +=
+            load.is_curved() ?
+              load.area * this->tangents.entering(*load.transfer, load.place, t, at, undershoot) :
+              load.entering(t, at);
+        }
+    for_each_source([&](const unsigned int i) {
+      balance.sources +=
+        nodes.volume(i) * this->source.value(nodes.position(i), t, u.local_element(i));
+    });
   }
 
 

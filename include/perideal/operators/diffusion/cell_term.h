@@ -133,6 +133,9 @@ namespace PeriDeal
 
     void fill();
 
+    /** What sources and sides add to the matrix that are no lines in u (LoadTangents). */
+    void add_tangents(dealii::TrilinosWrappers::SparseMatrix &sum) const;
+
     /** Mend cells and bonds; the rows that differ are in the memory of events. Collective. */
     void mend(const ChangeSet<dim> &change, const std::vector<dealii::BoundingBox<dim>> &joins);
     void add_changes(const std::vector<Cell>                       &changed,
@@ -144,7 +147,7 @@ namespace PeriDeal
     const std::unique_ptr<BondsBesideElements<dim>> zone_bonds; // null: finite elements alone
     const std::shared_ptr<const HangingNodes<dim>>  hanging;
     const std::vector<ContactPair>                  contact; // of cracks in the mesh
-    const std::shared_ptr<const HeatLoads<dim>>     loads;
+    const std::shared_ptr<HeatLoads<dim>>           loads;
     CellMaterial<dim>                               cell_material;
     const std::shared_ptr<ElementConstraints<dim>>  constraints;
     const std::shared_ptr<CellCapacity<dim>>        capacity;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/operators/diffusion/load_tangents.h>
 #include <perideal/operators/interface/operator.h>
 #include <perideal/scene/boundary_conditions.h>
 
@@ -18,6 +19,9 @@ namespace PeriDeal
    * What enters a body from outside: the source s, and through sides f + h (a - u)
    * (SurfaceTransfer), all positive into the body. The loads are what does not depend on u, with
    * the f in regions and at points; h acts in SideTerm or in the matrices of cells.
+   *
+   * A source or a side that is no line in u has its tangent in its place (LoadTangents), and
+   * before the first take_at() nothing.
    *
    * The arguments of the constructor must outlive this.
    */
@@ -36,6 +40,7 @@ namespace PeriDeal
       , source(source)
       , any_source(!source.is_constant() || source.value(dealii::Point<dim>()) != 0.)
       , varies(source.depends_on_time() || conditions.transfers_depend_on_time())
+      , tangents(conditions, source)
       , loads(layout)
     {}
 
@@ -45,6 +50,26 @@ namespace PeriDeal
     bool depends_on_time() const
     {
       return varies || conditions.depends_on_time();
+    }
+
+    /** Sources or sides are no lines in u. Not collective. */
+    bool depends_on_solution() const
+    {
+      return tangents.any();
+    }
+
+    /** As LoadTangents::take(). Collective. */
+    void take_at(const Vector &u, const double t, const bool steady)
+    {
+      tangents.take(u, t, steady);
+      find_coefficients();
+      find(t);
+    }
+
+    /** Owned unknowns whose rows of K take_at() changes, ascending. */
+    const std::vector<unsigned int> &curved_rows() const
+    {
+      return curved;
     }
 
     /** f(t), which stays until the next call. Collective. */
@@ -103,6 +128,9 @@ namespace PeriDeal
     /** Set `loads`, which are zero, to f(t). */
     virtual void assemble(const double t) const = 0;
 
+    /** Set `coefficients`, of tangents those that have been taken. */
+    virtual void find_coefficients() {}
+
     /** By constructors where loads do not vary. */
     void find(const double t) const
     {
@@ -116,7 +144,9 @@ namespace PeriDeal
     const BoundaryConditions<dim> &conditions;
     const Expression              &source;
     const bool                     any_source, varies;
-    Coefficients                   coefficients;
+    LoadTangents<dim>              tangents;
+    std::vector<unsigned int>      curved;       // curved_rows()
+    Coefficients                   coefficients; // ascending
     mutable Vector                 loads;
 
   private:

@@ -35,7 +35,7 @@ namespace PeriDeal
     DiffusionOperator::Layout                    layout;    // of vectors
     std::shared_ptr<Capacity>                    capacity;
     std::shared_ptr<const PrescribedValues<dim>> values;
-    std::shared_ptr<const DiffusionLoads<dim>>   loads;
+    std::shared_ptr<DiffusionLoads<dim>>         loads;
     std::vector<std::shared_ptr<Term<dim>>>      terms; // the others add to what the first one sets
 
     /** Call for the owned unknowns, each once or several times. Not collective. */
@@ -108,10 +108,10 @@ namespace PeriDeal
 
     bool depends_on_solution() const override
     {
-      return body.material.depends_on_temperature();
+      return body.material.depends_on_temperature() || parts.loads->depends_on_solution();
     }
 
-    void         take_material_at(const Vector &u) override;
+    void         take_material_at(const Vector &u, const double t) override;
     Balance      balance(const Vector &u, const double t, const bool steady) const override;
     std::string  place_of(const unsigned int local_index) const override;
     OperatorSize size() const override;
@@ -140,6 +140,7 @@ namespace PeriDeal
     const BodyParameters<dim> &body;
     FieldParts<dim>            parts;
     SpectralBounds             bounds;
-    mutable Vector             scratch; // where slaves have to be set
+    double                     rate_elsewhere = 0.; // than in DiffusionLoads::curved_rows()
+    mutable Vector             scratch;             // where slaves have to be set
   };
 } // namespace PeriDeal

@@ -16,8 +16,9 @@ namespace PeriDeal
    *
    *   f_i = int s N_i + int_sides (f + h a) N_i,
    *
-   * and sides add int h N_i N_j to K. Unknowns in regions and at points have their shares of the f
-   * there. What hanging nodes have belongs to their masters.
+   * and sides add int h N_i N_j to K, as does a source that is a function of u (LoadTangents, at
+   * the temperatures of the field at the quadrature points). Unknowns in regions and at points have
+   * their shares of the f there. What hanging nodes have belongs to their masters.
    */
   template <int dim>
   class HeatLoads : public DiffusionLoads<dim>
@@ -42,8 +43,11 @@ namespace PeriDeal
       return of_parts;
     }
 
-    /** Set the matrix of a cell to what transfer through its faces adds to it. */
+    /** Set the matrix of a cell to what transfer through its faces adds to it, of lines in u. */
     void find_transfer(const Cell &cell, dealii::FullMatrix<double> &matrix) const;
+
+    /** To what tangents add to it. Returns whether there are any in this cell. */
+    bool find_tangents(const Cell &cell, dealii::FullMatrix<double> &matrix) const;
 
     void add_to(Balance &balance, const Vector &u, const double t) const override;
 
@@ -59,8 +63,27 @@ namespace PeriDeal
     template <typename Visit>
     void on_faces(const Cell &cell, const Visit &visit) const;
 
+    /**
+     * Call visit(values, q, h) with the quadrature points of a cell, whose `indices` are set, and
+     * on its sides where there is a tangent.
+     */
+    template <typename Visit>
+    void on_slopes(const Cell &cell, const Visit &visit) const;
+
+    bool has_tangents(const Cell &cell) const;
+
+    /** T at a quadrature point of the cell whose `indices` are set; 0 where nothing asks for it. */
+    template <typename Values>
+    double taken_at(const Values &points, const unsigned int q) const;
+
+    /** Whether all there is to say of this source or transfer is known. */
+    bool is_known(const bool is_curved) const
+    {
+      return !is_curved || this->tangents.taken_at_all();
+    }
+
     void assemble(const double t) const override;
-    void find_coefficients();
+    void find_coefficients() override;
 
     using DiffusionLoads<dim>::conditions;
     using DiffusionLoads<dim>::source;

@@ -15,9 +15,10 @@ namespace PeriDeal
    *
    *   f_i = s V_i + sum_sides (f A_i + h A_i a),
    *
-   * and sides add h A_i to the diagonal of K. Prescribed nodes have no equation, but what enters
-   * there counts in the balance of heat; slaves follow the flux through their sides and have no
-   * load. What their nodes are does not change (NodeConstraints). No function is collective.
+   * and sides add h A_i to the diagonal of K; a source that is a function of u adds its own h V_i
+   * (LoadTangents). Prescribed nodes have no equation, but what enters there counts in the balance
+   * of heat; slaves follow the flux through their sides and have no load. What their nodes are does
+   * not change (NodeConstraints).
    */
   template <int dim>
   class NodeLoads : public DiffusionLoads<dim>
@@ -38,7 +39,12 @@ namespace PeriDeal
       const SurfaceTransfer *transfer;
       dealii::Point<dim>     place; // where formulas are taken
 
-      /** What enters where u is the value of the node. */
+      bool is_curved() const
+      {
+        return transfer->depends_on_temperature();
+      }
+
+      /** What enters where u is the value of the node, of a line. */
       double entering(const double t, const double u) const
       {
         const double given = area * transfer->flux.value(place, t);
@@ -48,10 +54,11 @@ namespace PeriDeal
     };
 
     void assemble(const double t) const override;
+    void find_coefficients() override;
 
-    /** Call visit(node, s V) for the owned nodes but slaves. */
+    /** Call visit(node) for the owned nodes in which a source acts: all but slaves. */
     template <typename Visit>
-    void for_each_source(const double t, const Visit &visit) const;
+    void for_each_source(const Visit &visit) const;
 
     const Nodes<dim>           &nodes;
     const NodeConstraints<dim> &constraints;

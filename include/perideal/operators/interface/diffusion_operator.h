@@ -111,17 +111,17 @@ namespace PeriDeal
     virtual bool update(const double t) = 0;
 
     /**
-     * K or C depend on the solution itself: temperature-dependent conductivity or capacity. Not
-     * collective.
+     * K, C or loads depend on the solution itself: a conductivity, a capacity, a source or what
+     * enters through a side is a function of the temperature. Not collective.
      */
     virtual bool depends_on_solution() const = 0;
 
     /**
-     * Make K and C those of the temperatures u, which must have been through distribute(). Bounds
-     * and diagonals change with them, and so do values of slaves: distribute() again before
-     * residual().
+     * Make K and C those of the temperatures u, which must have been through distribute(u, t), and
+     * sources and what enters through sides their tangents there. Bounds and diagonals change with
+     * them, and so do values of slaves: distribute() again before residual().
      */
-    virtual void take_material_at(const Vector &u) = 0;
+    virtual void take_material_at(const Vector &u, const double t) = 0;
 
     /**
      * Heat through each side and in the body; u must have been through distribute(u, t). @p steady

@@ -49,6 +49,21 @@ namespace PeriDeal
 
     dealii::TrilinosWrappers::SparseMatrix matrix;
 
+  protected:
+    /**
+     * For terms of which a part is renewed often: keep the matrix before that part is added, and be
+     * it again. Not by subtraction, for then digits depend on how often.
+     */
+    void keep_matrix()
+    {
+      kept_matrix.copy_from(matrix);
+    }
+
+    void restore_matrix()
+    {
+      matrix.copy_from(kept_matrix);
+    }
+
   private:
     /** Rows by local numbers. */
     struct Kept
@@ -57,7 +72,8 @@ namespace PeriDeal
       std::vector<double>       values;
     };
 
-    const bool first, is_symmetric;
-    Kept       kept;
+    const bool                             first, is_symmetric;
+    Kept                                   kept;
+    dealii::TrilinosWrappers::SparseMatrix kept_matrix;
   };
 } // namespace PeriDeal
