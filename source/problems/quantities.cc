@@ -247,11 +247,19 @@ namespace PeriDeal
             if (values == known.end()) // perhaps one of another model
               continue;
             found.insert(quantity.field);
-            const std::string where   = output.where("Quantities") + ", '" + quantity.name + "'";
-            const auto [value, place] = find(*problem, quantity, values->second, where);
-            record.add_row(problem->name(), quantity.name, value, t);
+            std::pair<double, Point<dim>> of_model;
+            with_formulas(problem->dofs().get_communicator(), [&] {
+              of_model = find(*problem,
+                              quantity,
+                              values->second,
+                              output.where("Quantities") + ", '" + quantity.name + "'");
+            });
+            record.add_row(problem->name(), quantity.name, of_model.first, t);
             for (unsigned int d = 0; d < dim && quantity.has_place(); ++d)
-              record.add_row(problem->name(), quantity.name + " at " + "xyz"[d], place[d], t);
+              record.add_row(problem->name(),
+                             quantity.name + " at " + "xyz"[d],
+                             of_model.second[d],
+                             t);
           }
       }
     for (const Quantity &quantity : output.quantities)
@@ -263,5 +271,14 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  void check_quantities(const std::vector<const Problem<dim> *> &problems)
+  {
+    ResultRecord nowhere;
+    add_quantities(problems, 0., nowhere);
+  }
+
+
   PERIDEAL_INSTANTIATE_FUNCTION(add_quantities);
+  PERIDEAL_INSTANTIATE_FUNCTION(check_quantities);
 } // namespace PeriDeal

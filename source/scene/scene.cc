@@ -206,6 +206,31 @@ namespace PeriDeal
             known +
             "': the Stefan-Boltzmann constant is 5.670374419e-8 W/(m2 K4). Give 'Flux' with that in your units there, 'side: emissivity*sigma*(Ta^4 - T^4)'.");
     }
+
+
+    /** Sections `Output` and `Checkpoint`, once sides and phases are known. */
+    template <int dim>
+    void take_output(Scene<dim> &scene, const bool rests)
+    {
+      scene.output.parse(scene.time.end_time, rests);
+      scene.checkpoint.parse(scene.time.end_time, rests);
+      const bool layers = scene.domain.has_extra_layers();
+      scene.output.make_grid(scene.domain.is_box(),
+                             layers ? scene.domain.extra.body_lower : scene.domain.lower,
+                             layers ? scene.domain.extra.body_upper : scene.domain.upper);
+      const std::string where = scene.output.where("Quantities");
+      scene.output.quantities =
+        parse_quantities(scene.output.text("Quantities"),
+                         where,
+                         scene.material.phases.all().names,
+                         [&](const std::string &name) {
+                           const auto id   = scene.boundary_conditions.side_id(name, where);
+                           const auto part = scene.boundary_conditions.part(id);
+                           if (part != nullptr && part->kind == Part::point)
+                             entry_error(where, "'" + name + "' is a point; use 'Probes'.");
+                           return id;
+                         });
+    }
   } // namespace
 
 
@@ -262,25 +287,9 @@ namespace PeriDeal
     take_times();
     solver.parse();
     // an elastic body may not be steady, though it is said to be: its solver says so
-    output.parse(time.end_time, this->deforms ? rests : time.steady);
-    output.quantities = parse_quantities(
-      output.text("Quantities"),
-      output.where("Quantities"),
-      material.phases.all().names,
-      [&](const std::string &name) {
-        const auto id   = boundary_conditions.side_id(name, output.where("Quantities"));
-        const auto part = boundary_conditions.part(id);
-        if (part != nullptr && part->kind == Part::point)
-          entry_error(output.where("Quantities"), "'" + name + "' is a point; use 'Probes'.");
-        return id;
-      });
-    checkpoint.parse(time.end_time, this->deforms ? rests : time.steady);
+    take_output(*this, this->deforms ? rests : time.steady);
     guards.parse();
     accuracy.parse();
-    const bool layers = domain.has_extra_layers();
-    output.make_grid(domain.is_box(),
-                     layers ? domain.extra.body_lower : domain.lower,
-                     layers ? domain.extra.body_upper : domain.upper);
     reference.parse();
     validate();
   }

@@ -270,13 +270,7 @@ namespace PeriDeal
     for (Problem<dim> *const problem : all_problems())
       guards->over(*problem, 0., [&] { guards->look(*problem, 0.); });
     const bool at_stops = tells_at_stops();
-    if (at_stops)
-      add_totals(0.);
-    else // what is wrong with them is to be told before steps are taken
-      with_formulas(communicator, [&] {
-        ResultRecord of_start;
-        add_quantities(reported(), 0., of_start);
-      });
+    at_stops ? add_totals(0.) : check_quantities(reported());
     if (scene.output.starts_at_zero())
       write_fields(0.);
     if (at_stops)
@@ -317,7 +311,7 @@ namespace PeriDeal
         problem->add_totals(t, context());
         guards->look_at_totals(*problem, t);
       }
-    with_formulas(communicator, [&] { add_quantities(reported(), t, *record); });
+    add_quantities(reported(), t, *record);
   }
 
 
@@ -358,12 +352,11 @@ namespace PeriDeal
       add_totals(t);
     const bool shows = scene.output.writes_fields_at(t);
     with_formulas(communicator, [&] { output->write_points(t, exact.get(), shows); });
-    if (shows)
-      {
-        add_errors(t);
-        compare_models(reported(), scene.domain, t, *record);
-        write_fields(t);
-      }
+    if (!shows)
+      return end_output(t);
+    add_errors(t);
+    compare_models(reported(), scene.domain, t, *record);
+    write_fields(t);
     end_output(t);
   }
 
@@ -461,16 +454,13 @@ namespace PeriDeal
   {
     const List before_all      = companions();
     const auto [passed, n_all] = count_stops();
+    const auto says_nothing    = [](const double) {};
     for (; place.problem < before_all.size(); ++place.problem)
       {
         Problem<dim>  &companion = *before_all[place.problem];
         Timings::Scope scope(timings, companion.field_name());
         guards->over(companion, to, [&] {
-          companion.advance(
-            place.now,
-            to,
-            [](const double) {},
-            context());
+          companion.advance(place.now, to, says_nothing, context());
           guards->look(companion, to);
         });
       }

@@ -21,4 +21,8 @@ namespace PeriDeal
   void add_quantities(const std::vector<const Problem<dim> *> &problems,
                       const double                             t,
                       ResultRecord                            &record);
+
+  /** What add_quantities() throws, before steps are taken. Collective. */
+  template <int dim>
+  void check_quantities(const std::vector<const Problem<dim> *> &problems);
 } // namespace PeriDeal
