@@ -102,9 +102,12 @@ namespace PeriDeal
     constexpr unsigned int most = 60;
     const double           goal = std::max(1e-4 * tolerance, 1e-14); // above round-off
     chord.start();
+    double wanted = 0.;
     for (unsigned int k = 0; k < most; ++k)
       {
-        solve_once(u, w, s, t, U);
+        const double before = solve_once(u, w, s, t, wanted, U);
+        if (k == 0 && !op.capacity_depends_on_solution()) // later rounds need no more digits
+          wanted = before;
         if (!op.depends_on_solution() || capacity_norm(op, change) <= goal * capacity_norm(op, U))
           {
             op.residual(residual, U, t);
@@ -128,11 +131,12 @@ namespace PeriDeal
   }
 
 
-  void ImplicitStepper::solve_once(const Vector &u,
-                                   const Vector &w,
-                                   const double  s,
-                                   const double  t,
-                                   Vector       &U)
+  double ImplicitStepper::solve_once(const Vector &u,
+                                     const Vector &w,
+                                     const double  s,
+                                     const double  t,
+                                     const double  wanted,
+                                     Vector       &U)
   {
     op.distribute(U, t);
     if (op.depends_on_solution())
@@ -158,10 +162,12 @@ namespace PeriDeal
       }
     op.clear_constrained(change);
     residual.sadd(s, 1., change);
-    change = 0.;
-    spent.iterations += solver.solve(1., s, change, residual, 0., more);
+    change              = 0.;
+    const double before = residual.l2_norm();
+    spent.iterations += solver.solve(1., s, change, residual, wanted, more);
     U += change;
     op.distribute(U, t);
+    return before;
   }
 
 

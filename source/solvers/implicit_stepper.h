@@ -171,7 +171,16 @@ namespace PeriDeal
      */
     double solve_stage(const Vector &u, const Vector &w, const double s, const double t, Vector &U);
 
-    void solve_once(const Vector &u, const Vector &w, const double s, const double t, Vector &U);
+    /**
+     * One round, up to the solver's tolerance times @p wanted, 0: times the residual. Returns the
+     * residual before it.
+     */
+    double solve_once(const Vector &u,
+                      const Vector &w,
+                      const double  s,
+                      const double  t,
+                      const double  wanted,
+                      Vector       &U);
 
     /** SDIRK2 (gamma = 1 - 1/sqrt 2, L-stable) into `next`; the stage rates into k1, k2. */
     void sdirk2(const Vector &u, const double t, const double h, Vector &k1, Vector &k2);
