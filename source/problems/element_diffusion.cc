@@ -120,6 +120,18 @@ namespace PeriDeal
         doubts = notes_on_cells(handler, scene, cells().cut_cells());
         if (model == ModelKind::coupled && scene.coupling.certificate)
           certify();
+        if (!node_set && !scene.output.quantities.empty())
+          find_nodes();
+      }
+
+      Point<dim> position(const unsigned int node) const override
+      {
+        return node_set ? Field<dim>::position(node) : nodes.positions[node];
+      }
+
+      double volume(const unsigned int node) const override
+      {
+        return node_set ? Field<dim>::volume(node) : nodes.volumes[node];
       }
 
       FieldOperator<dim> &op() const override
@@ -476,15 +488,34 @@ namespace PeriDeal
         integrals.compress(VectorOperation::add);
       }
 
-      /** Call visit(local index, position) for each owned dof. */
+      /** Places and volumes, which elements have no other use for. Collective. */
+      void find_nodes()
+      {
+        Vector volumes;
+        diffusion->initialize_vector(volumes);
+        integrate([](const Point<dim> &) { return 1.; }, volumes);
+        cells().hanging_nodes().condense(volumes);
+        nodes.volumes.assign(volumes.begin(), volumes.begin() + volumes.locally_owned_size());
+        nodes.positions.resize(nodes.volumes.size());
+        for_each_node([&](const unsigned int i, const Point<dim> &p) { nodes.positions[i] = p; },
+                      volumes);
+      }
+
       void for_each_node(
         const std::function<void(const unsigned int, const Point<dim> &)> &visit) const
+      {
+        for_each_node(visit, solution);
+      }
+
+      /** Call visit(local index, position) for each owned dof of a vector. */
+      void for_each_node(const std::function<void(const unsigned int, const Point<dim> &)> &visit,
+                         const Vector &of_nodes) const
       {
         FEValues<dim>                        values(element,
                              Quadrature<dim>(element.get_unit_support_points()),
                              update_quadrature_points);
         std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
-        const auto                          &owned = solution.get_partitioner();
+        const auto                          &owned = of_nodes.get_partitioner();
         for (const auto &cell : handler.active_cell_iterators())
           if (!cell->is_artificial())
             {
@@ -499,9 +530,14 @@ namespace PeriDeal
       const ModelKind                     model;
       FE_Q<dim>                           element;
       std::unique_ptr<FieldOperator<dim>> diffusion;
-      std::vector<std::string>            doubts;   // about cells at the start
-      std::unique_ptr<Transfer>           transfer; // while the mesh changes
-      double                              heat_before = 0.;
+      struct
+      {
+        std::vector<Point<dim>> positions;
+        std::vector<double>     volumes;
+      } nodes;                            // where quantities are asked for, without a node_set
+      std::vector<std::string>  doubts;   // about cells at the start
+      std::unique_ptr<Transfer> transfer; // while the mesh changes
+      double                    heat_before = 0.;
     };
   } // namespace
 
