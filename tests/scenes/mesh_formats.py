@@ -200,6 +200,15 @@ def formats():
     status, out, _ = run_perideal(["mesh", os.path.join(FOLDER, "sets.inp"), out_path])
     again = run_perideal(["mesh", out_path])[1]
     check(status == 0 and "'left'" in again and "'iron'" in again and f": {n} hexahedra, 553 nodes" in again, f"what was written: {again}")
+    # Triangles on the left side and away from the body, which sets name beside a set of nodes.
+    nodes, cells, ends = bar("tetrahedra")
+    skin = [[k + 1 for k in face] for face in faces_in(cells, ends["left"])] + [[1, 2, len(nodes)]]
+    shells = "*Element, type=S3, elset=skin\n" + "".join(f"{k}, {', '.join(map(str, face))}\n" for k, face in enumerate(skin, 1001)) + "*Elset"
+    both = write("both.inp", abaqus_text(nodes, cells, ends).replace("*Elset", shells, 1))
+    notes = convert(both, out_path)
+    again = run_perideal(["mesh", out_path])[1]
+    check(any("1 elements of dimension 2" in note for note in notes) and any("'left'" in note and "left out" in note for note in notes) != ("'left' (" in again), f"{notes}")
+    check(again.count("24 faces, area 1") == 2, f"a side that two sets name: {again}")
     parted = {"Domain/Mesh file": os.path.join(FOLDER, "sets.inp"), "Material/Phases/Regions": "soft: mesh(iron)", "Material/Phases/Young modulus": "soft: 100",
               "Material/Poisson ratio": "0", "Output/Probes": "2, 0.5, 0.5", "Solver/Tolerance": "1e-13"}
     run = run_scene(BAR, parted)

@@ -61,8 +61,7 @@ def write(mesh: Mesh, dimension: int, out: str) -> None:
 
 def _elements(mesh: Mesh, groups: Groups, dimension: int, node_numbers) -> list:
     """Lines of elements: number, kind, 2, group, group, nodes. Cells keep their numbers, if they can."""
-    kept = [block for block in mesh.blocks
-            if block.shape.dimension == dimension or (block.shape.dimension == dimension - 1 and (groups.cells[id(block)] > 0).any())]
+    kept = [block for block in mesh.blocks if block.shape.dimension == dimension]
     all_numbers = np.concatenate([block.numbers for block in kept]) if kept else np.zeros(0, dtype=np.int64)
     unique = len(np.unique(all_numbers)) == len(all_numbers) and (not len(all_numbers) or 0 < all_numbers.min() <= all_numbers.max() < 2 ** 30)
     last, lists = int(all_numbers.max()) if unique and len(all_numbers) else 0, []
@@ -73,7 +72,7 @@ def _elements(mesh: Mesh, groups: Groups, dimension: int, node_numbers) -> list:
         rows = np.empty((len(group), 5 + block.shape.corners), dtype=np.int64)
         rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3], rows[:, 4] = own, block.shape.gmsh, 2, group, group
         rows[:, 5:] = node_numbers[block.nodes]
-        lists.append(rows if block.shape.dimension == dimension else rows[group > 0])
+        lists.append(rows)
     for shape in SIDES.values():
         sides = [(corners, group) for corners, group in groups.sides if len(corners) == shape.corners]
         if sides and shape.dimension == dimension - 1:

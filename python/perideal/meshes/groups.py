@@ -47,63 +47,82 @@ class Groups:
         for name in owner.values():
             kept[name] += 1
         for name, n in kept.items():
-            if 0 < n < sizes[name]:
-                self.mesh.notes.append(f"'{name}' keeps {n} of its {sizes[name]} {what}: the others are in smaller sets, too, and each is in one.")
-            elif n == 0 and sizes[name] > 0:
-                self.mesh.notes.append(f"'{name}' is left out: all of its {sizes[name]} {what} are in other sets, too.")
+            self._note_loss(name, n, sizes[name], what)
         return owner
 
-    def _take_cells(self) -> None:
+    def _blocks(self, dimension: int):
+        """Blocks of this dimension, with the number of their first element."""
         first = 0
-        sizes = []
         for block in self.mesh.blocks:
-            sizes.append((first, block))
+            if block.shape.dimension == dimension:
+                yield first, block
             first += len(block.numbers)
-        group = np.zeros(first, dtype=np.int64)
-        for dimension in (self.dimension, self.dimension - 1):
-            inside = np.zeros(first, dtype=bool)
-            for start, block in sizes:
-                inside[start:start + len(block.numbers)] = block.shape.dimension == dimension
-            sets = {name: np.unique(rows[inside[rows]]) for name, rows in self.mesh.element_sets.items()}
-            sets = {name: rows for name, rows in sets.items() if len(rows)}
-            names = _order({name: len(rows) for name, rows in sets.items()})
-            for name in names:
-                group[sets[name]] = self._number(dimension, name)
-            for name in names:
-                if _ENTITY.fullmatch(name) and len(names) > 1 and not (group[sets[name]] == self._number(dimension, name)).any():
-                    del self.names[(dimension, name)]
-                    continue
-                kept = int((group[sets[name]] == self._number(dimension, name)).sum())
-                if kept == 0:
-                    self.mesh.notes.append(f"'{name}' is left out: all of its {len(sets[name])} elements are in smaller sets, too, and each is in one.")
-                    del self.names[(dimension, name)]
-                elif kept < len(sets[name]):
-                    self.mesh.notes.append(f"'{name}' keeps {kept} of its {len(sets[name])} elements: the others are in smaller sets, too, and each is in one.")
-        for start, block in sizes:
-            self.cells[id(block)] = group[start:start + len(block.numbers)]
 
-    def _surface(self):
-        """Faces of one cell only, as rows of corners with -1 behind those of a triangle; and the corners as they follow each other."""
-        faces = []
-        for block in self.mesh.blocks:
-            if block.shape.dimension == self.dimension:
-                for corners in block.shape.abaqus:
-                    piece = np.full((len(block.nodes), 4), -1, dtype=np.int64)
-                    piece[:, :len(corners)] = block.nodes[:, corners]
-                    faces.append(piece)
-        if not faces:
-            return np.zeros((0, 4), dtype=np.int64)
+    def _take_cells(self) -> None:
+        group = np.zeros(self.mesh.n_elements, dtype=np.int64)
+        inside = np.zeros(len(group), dtype=bool)
+        for first, block in self._blocks(self.dimension):
+            inside[first:first + len(block.numbers)] = True
+        sets = {name: np.unique(rows[inside[rows]]) for name, rows in self.mesh.element_sets.items()}
+        sets = {name: rows for name, rows in sets.items() if len(rows)}
+        names = _order({name: len(rows) for name, rows in sets.items()})
+        for name in names:
+            group[sets[name]] = self._number(self.dimension, name)
+        for name in names:
+            kept = int((group[sets[name]] == self._number(self.dimension, name)).sum())
+            self._note_loss(name, kept, len(sets[name]), "elements")
+            if kept == 0:
+                del self.names[(self.dimension, name)]
+        for first, block in self._blocks(self.dimension):
+            self.cells[id(block)] = group[first:first + len(block.numbers)]
+
+    def _note_loss(self, name: str, kept: int, n: int, what: str) -> None:
+        if kept == 0 and not _ENTITY.fullmatch(name):
+            self.mesh.notes.append(f"'{name}' is left out: all of its {n} {what} are in smaller sets, too, and each is in one.")
+        elif 0 < kept < n:
+            self.mesh.notes.append(f"'{name}' keeps {kept} of its {n} {what}: the others are in smaller sets, too, and each is in one.")
+
+    def _faces(self):
+        """Faces of the cells as their corners follow each other, with -1 behind those of a triangle; their sorted corners; how many have each."""
+        faces = [np.zeros((0, 4), dtype=np.int64)]
+        for _, block in self._blocks(self.dimension):
+            for corners in block.shape.abaqus or ((0,), (1,)):
+                piece = np.full((len(block.nodes), 4), -1, dtype=np.int64)
+                piece[:, :len(corners)] = block.nodes[:, corners]
+                faces.append(piece)
         faces = np.concatenate(faces)
-        key = np.sort(faces, axis=1)
-        _, first, n = np.unique(key, axis=0, return_index=True, return_counts=True)
-        return faces[np.sort(first[n == 1])]
+        key, first, n = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+        return faces[first], key, n
+
+    def _sides_of_elements(self, key) -> dict:
+        """Elements of one dimension less in sets, as faces by the name of the set; those that are no faces of cells are left out."""
+        owners, lost = {}, 0
+        for first, block in self._blocks(self.dimension - 1):
+            padded = np.full((len(block.nodes), 4), -1, dtype=np.int64)
+            padded[:, :block.shape.corners] = block.nodes
+            padded = np.sort(padded, axis=1)
+            both, n = np.unique(np.concatenate([key, np.unique(padded, axis=0)]), axis=0, return_counts=True)
+            known = {tuple(row) for row in both[n == 2].tolist()}
+            tuples = [tuple(row) for row in padded.tolist()]
+            for name, rows in self.mesh.element_sets.items():
+                for row in rows[(rows >= first) & (rows < first + len(tuples))] - first:
+                    if tuples[row] in known:
+                        corners = block.nodes[row].tolist()
+                        owners.setdefault(name, {})[tuple(sorted(corners))] = corners
+                    else:
+                        lost += 1
+        if lost:
+            self.mesh.notes.append(f"{lost} elements of dimension {self.dimension - 1} in sets are no faces of cells: they are left out.")
+        return owners
 
     def _take_sides(self) -> None:
-        owners = {}
+        sets_of_sides = any(True for _ in self._blocks(self.dimension - 1)) and self.mesh.element_sets
+        corners, key, n = self._faces() if self.mesh.node_sets or sets_of_sides else (np.zeros((0, 4), dtype=np.int64),) * 2 + (np.zeros(0),)
+        owners = self._sides_of_elements(key) if sets_of_sides else {}
         for name, faces in self.mesh.face_sets.items():
             owners.setdefault(name, {}).update((tuple(sorted(face)), face) for face in faces)
+        surface = corners[n == 1]
         cells = [block.nodes for block in self.mesh.blocks if block.shape.dimension == self.dimension]
-        surface = self._surface() if self.mesh.node_sets and self.dimension > 1 else np.zeros((0, 4), dtype=np.int64)
         for name, rows in self.mesh.node_sets.items():
             within = np.zeros(len(self.mesh.points) + 1, dtype=bool)
             within[rows] = True
@@ -112,7 +131,7 @@ class Groups:
                 if name not in self.mesh.element_sets:
                     self.mesh.notes.append(f"the set of nodes '{name}' has whole cells: it is no side and left out; give a set of elements for a region.")
                 continue
-            faces = surface[within[surface].all(axis=1)] if self.dimension > 1 else surface
+            faces = surface[within[surface].all(axis=1)]
             if len(faces):
                 found = [tuple(corner for corner in face if corner >= 0) for face in faces.tolist()]
                 owners.setdefault(name, {}).update((tuple(sorted(face)), face) for face in found)
