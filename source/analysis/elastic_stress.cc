@@ -20,10 +20,10 @@ namespace PeriDeal
       for (unsigned int b = a; b < dim; ++b)
         full[a][b] = stress[a][b];
     if constexpr (dim == 2)
-      full[2][2] = stress_zz(body.material.moduli(p),
+      full[2][2] = stress_zz(body.moduli(p, temperature_change),
                              body.elasticity.plane,
                              stress,
-                             body.material.thermal_expansion.value(p) * temperature_change);
+                             body.free_expansion(p, temperature_change));
     return full;
   }
 
@@ -34,10 +34,10 @@ namespace PeriDeal
                                          const Point<dim>              &p,
                                          const double                   temperature_change)
   {
-    return full_stress(stress(body.material.moduli(p),
+    return full_stress(stress(body.moduli(p, temperature_change),
                               body.elasticity.plane,
                               strain,
-                              body.material.thermal_expansion.value(p) * temperature_change),
+                              body.free_expansion(p, temperature_change)),
                        body,
                        p,
                        temperature_change);
@@ -53,7 +53,7 @@ namespace PeriDeal
     for (unsigned int a = 0; a < dim; ++a)
       for (unsigned int b = a; b < dim; ++b)
         full[a][b] = strain[a][b];
-    return 2. * body.material.moduli(p).shear * deviator(full);
+    return 2. * body.moduli(p).shear * deviator(full);
   }
 
 

@@ -81,7 +81,7 @@ namespace PeriDeal
   template <int dim>
   HookeAt<dim> StressProblem<dim>::find_law(const Point<dim> &p) const
   {
-    const Moduli moduli = body.material.moduli(p);
+    const Moduli moduli = body.moduli(p);
     return {lambda_of(moduli, dim, body.elasticity.plane),
             moduli.shear,
             thermal_strain(body, p, body.elasticity.temperature_change.value(p))};

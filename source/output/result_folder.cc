@@ -442,6 +442,9 @@ namespace PeriDeal
     const std::string file = claim(name);
     if (file.empty())
       return;
+    std::error_code ignored; // what cannot be made shows in the next line
+    if (name.find('/') != std::string::npos)
+      fs::create_directory(fs::path(file).parent_path(), ignored);
     if (const int problem = replace_file(file, text); problem != 0)
       keep_failure(name, problem);
   }

@@ -36,7 +36,7 @@ namespace PeriDeal
         return {};
       const Tensor<1, dim> h = scene.domain.spacing();
       const Moduli         moduli =
-        scene.material.moduli(scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower));
+        scene.moduli(scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower));
       const StateLaw law = scene.elasticity.is_bond_based() ?
                              bond_law(moduli, dim, scene.elasticity.plane) :
                              state_law(moduli, dim, scene.elasticity.plane);
@@ -386,7 +386,7 @@ namespace PeriDeal
           {
             const Point<dim> &p = node_set->position(i);
             entropy[i]          = node_set->volume(i) *
-                         entropy_of_deformation(scene.material.moduli(p),
+                         entropy_of_deformation(scene.moduli(p),
                                                 scene.material.thermal_expansion.value(p),
                                                 dim,
                                                 scene.elasticity.plane,

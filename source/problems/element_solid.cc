@@ -55,9 +55,10 @@ namespace PeriDeal
                           const Vector                 &change,
                           const types::global_dof_index node)
     {
-      return thermal_strain_factor(scene.material.moduli(p), dim, scene.elasticity.plane) *
-             scene.material.thermal_expansion.value(p) *
-             (change.size() > 0 ? change(node) : scene.elasticity.temperature_change.value(p));
+      return thermal_strain(scene,
+                            p,
+                            change.size() > 0 ? change(node) :
+                                                scene.elasticity.temperature_change.value(p));
     }
 
 
@@ -210,7 +211,7 @@ namespace PeriDeal
     void take_amount_of_j(const Scene<dim> &scene, StressIntensity &found)
     {
       constexpr double alike  = 0.2;
-      const Moduli     moduli = scene.material.moduli(scene.domain.lower);
+      const Moduli     moduli = scene.moduli(scene.domain.lower);
       const double     E = moduli.young(), nu = moduli.poisson(),
                    plane_modulus =
                      scene.elasticity.plane == PlaneState::stress ? E : E / (1. - nu * nu),
@@ -456,13 +457,14 @@ namespace PeriDeal
           [&](const auto &values, const unsigned int q, const auto &indices, const auto &gradient) {
             if (elements->cut_cells()[values.get_cell()->active_cell_index()])
               return;
-            const Point<dim> p       = values.quadrature_point(q);
-            const double     entropy = entropy_of_deformation(scene.material.moduli(p),
-                                                          scene.material.thermal_expansion.value(p),
-                                                          dim,
-                                                          scene.elasticity.plane,
-                                                          trace(gradient),
-                                                          value_at(values, q, indices, change));
+            const Point<dim> p = values.quadrature_point(q);
+            const double     entropy =
+              entropy_of_deformation(scene.moduli(p),
+                                     scene.material.thermal_expansion.value(p), // of no T
+                                     dim,
+                                     scene.elasticity.plane,
+                                     trace(gradient),
+                                     value_at(values, q, indices, change));
             for (unsigned int i = 0; i < indices.size(); ++i)
               {
                 const double part = values.JxW(q) * values.shape_value(i, q);

@@ -45,7 +45,7 @@ namespace PeriDeal
         {
           const auto  &material = solid.scene.material;
           const auto   p        = solid.position(i);
-          const auto   moduli   = material.moduli(p);
+          const auto   moduli   = material.moduli(p); // of no T
           const double alpha    = material.thermal_expansion.value(p);
           const double bulk     = moduli.young() / (3. * (1. - 2. * moduli.poisson()));
           return T0 * 9. * bulk * alpha * alpha * solid.volume(i);

@@ -85,7 +85,7 @@ namespace PeriDeal
       context.has_cracks = !scene.cracks.cracks.empty();
       context.has_holes  = domain.shape == Shape::plate_with_hole;
       if (scene.material.uniform_moduli())
-        context.moduli = scene.material.moduli(middle);
+        context.moduli = scene.moduli(middle);
       if (scene.material.density.is_constant())
         context.density = scene.material.density.value(middle);
       if constexpr (dim == 2)

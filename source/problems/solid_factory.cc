@@ -328,7 +328,7 @@ namespace PeriDeal
       for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            const double nu = scene.material.moduli(cell->center()).poisson();
+            const double nu = scene.moduli(cell->center()).poisson();
             lowest          = std::min(lowest, nu);
             highest         = std::max(highest, nu);
           }

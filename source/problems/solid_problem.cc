@@ -121,7 +121,10 @@ namespace PeriDeal
     if (heat == nullptr)
       return;
     Timings::Scope scope(this->timings, "thermal loads");
-    op().set_temperature_change(computed_temperature_change(*this));
+    with_formulas(this->dofs().get_communicator(),
+                  [&] { op().set_temperature_change(computed_temperature_change(*this)); });
+    if (loading && scene.moduli_change())
+      loading->stiffness_changed();
   }
 
 
@@ -706,7 +709,7 @@ namespace PeriDeal
                             cause_in_contrast<dim>(
                               this->dofs().get_triangulation(),
                               "The Young modulus",
-                              [&](const Point<dim> &p) { return scene.material.moduli(p).young(); },
+                              [&](const Point<dim> &p) { return scene.moduli(p).young(); },
                               trip.monitor);
   }
 

@@ -64,7 +64,7 @@ namespace PeriDeal
           for (unsigned int d = 0; d < dim; ++d)
             slopes[c][d] = g[d];
         }
-      const Moduli                  moduli = scene.material.moduli(point);
+      const Moduli                  moduli = scene.moduli(point);
       const PlaneState              plane  = scene.elasticity.plane;
       const SymmetricTensor<2, dim> found  = stress<dim>(moduli, plane, symmetrize(slopes));
       for (unsigned int a = 0; a < dim; ++a)
@@ -235,7 +235,7 @@ namespace PeriDeal
           const Point<dim> p = model.position(i);
           try
             {
-              stiffness += model.volume(i) * model.scene.material.moduli(p).young();
+              stiffness += model.volume(i) * model.scene.moduli(p).young();
               volume += model.volume(i);
             }
           catch (const UserError &) // no number at this point, which finite elements need not use

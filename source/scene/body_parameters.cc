@@ -35,6 +35,32 @@ namespace PeriDeal
 
 
   template <int dim>
+  Moduli BodyParameters<dim>::moduli(const Point<dim> &p, const double temperature_change) const
+  {
+    return material.moduli(p, elasticity.reference_temperature + temperature_change);
+  }
+
+
+  template <int dim>
+  Moduli BodyParameters<dim>::moduli(const Point<dim> &p) const
+  {
+    return moduli(p,
+                  material.given.depend_on_temperature() ? elasticity.temperature_change.value(p) :
+                                                           0.);
+  }
+
+
+  template <int dim>
+  double BodyParameters<dim>::free_expansion(const Point<dim> &p,
+                                             const double      temperature_change) const
+  {
+    return material.thermal_expansion.value(p,
+                                            elasticity.reference_temperature + temperature_change) *
+           temperature_change;
+  }
+
+
+  template <int dim>
   std::pair<std::string, std::string> BodyParameters<dim>::obstacle_to_bonds_on_elements() const
   {
     if (domain.has_nodes_at_centers())

@@ -6,6 +6,7 @@
 #include <perideal/base/diverged.h>
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/expression.h>
+#include <perideal/scene/formula_names.h>
 #include <perideal/scene/lists.h>
 
 #include <muParser.h>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -30,6 +32,8 @@ namespace PeriDeal
 
     std::vector<double>      marks; // marked_temperatures()
     std::vector<std::string> names; // of variables that are no place; else empty
+
+    std::shared_ptr<const FormulaNames> known = names_of_formulas(); // the tables are in use
 
     std::function<double(const dealii::Point<3> &, const double)> function; // else the parser
 
@@ -89,6 +93,44 @@ namespace PeriDeal
     }
 
 
+    double value_of_table(void *const table, const double place)
+    {
+      return static_cast<const FormulaTable *>(table)->value(place);
+    }
+
+
+    /** Names of the scene, of which variables come first. */
+    void define_names_of_scene(mu::Parser                     &parser,
+                               const FormulaNames             &names,
+                               const std::vector<std::string> &variables)
+    {
+      for (const auto &[name, number] : names.constants)
+        if (!has(variables, name))
+          parser.DefineConst(name, number);
+      for (const FormulaTable &table : names.tables)
+        if (!has(variables, table.name))
+          parser.DefineFunUserData(table.name,
+                                   value_of_table,
+                                   const_cast<FormulaTable *>(&table), // it does not change
+                                   false); // so that what it lacks is told of numbers, too
+    }
+
+
+    /** Whether a name stands in a formula, not as a part of another. */
+    bool mentions(const std::string &formula, const std::string &name)
+    {
+      const auto is_part = [&](const std::size_t k) {
+        return k < formula.size() &&
+               (std::isalnum(static_cast<unsigned char>(formula[k])) || formula[k] == '_');
+      };
+      for (std::size_t k = formula.find(name); k != std::string::npos;
+           k             = formula.find(name, k + 1))
+        if (!is_part(k - 1) && !is_part(k + name.size()))
+          return true;
+      return false;
+    }
+
+
     /**
      * `&&` and `||` as the operators `&` and `|` and a blank, so that columns stay: muparser reads
      * its own as two of ours.
@@ -108,11 +150,17 @@ namespace PeriDeal
     }
 
 
-    /** Numbers of a formula, a and b one after the other: 0, +-a, +-a+-b, and all middles. */
-    std::vector<double> marks_of(const std::string &formula)
+    /**
+     * Numbers of a formula, a and b one after the other: 0, +-a, +-a+-b, and all middles; and of
+     * its tables.
+     */
+    std::vector<double> marks_of(const std::string &formula, const FormulaNames &names)
     {
       std::vector<double> places{0.}, marks;
-      double              last = 0.;
+      for (const FormulaTable &table : names.tables)
+        if (mentions(formula, table.name))
+          places.insert(places.end(), table.places.begin(), table.places.end());
+      double last = 0.;
       for (const char *c = formula.c_str(); *(c += std::strcspn(c, "0123456789.")) != '\0';)
         {
           char        *end    = nullptr;
@@ -298,7 +346,9 @@ namespace PeriDeal
     const bool of_places = is_of_places(variables);
     static std::map<std::pair<std::string, std::string>, std::weak_ptr<Compiled>> known;
     std::weak_ptr<Compiled>                                                      &one =
-      known[{formula, of_places ? (with_temperature ? "x, T" : "x") : variables}];
+      known[{formula,
+             (of_places ? (with_temperature ? "x, T" : "x") : variables) + '\n' +
+               std::to_string(reinterpret_cast<std::uintptr_t>(names_of_formulas().get()))}];
     compiled = one.lock();
     if (compiled != nullptr)
       return;
@@ -320,7 +370,12 @@ namespace PeriDeal
     for (unsigned int k = 0; k < names.size(); ++k)
       parser.DefineVar(names[k], places[k]);
     if (with_temperature)
-      parser.DefineVar("T", &compiled->T);
+      {
+        parser.DefineVar("T", &compiled->T);
+        names.emplace_back("T");
+      }
+    define_names_of_scene(parser, *compiled->known, names);
+    table_fault() = {};
     int n_results = 0;
     try
       {
@@ -345,12 +400,13 @@ namespace PeriDeal
                   "the formula '" + formula + "' gives " + std::to_string(n_results) +
                     " values, needs one (is a comma outside parentheses?).");
     if (compiled->uses_temperature)
-      compiled->marks = marks_of(formula);
+      compiled->marks = marks_of(formula, *compiled->known);
     if (!compiled->uses_time && !compiled->uses_position && !compiled->uses_temperature)
       {
         compiled.reset();
         if (!std::isfinite(constant))
-          entry_error(where, "the value of '" + formula + "' is not finite.");
+          entry_error(where,
+                      "the value of '" + formula + "' is not finite." + table_fault().text());
       }
   }
 
@@ -384,12 +440,16 @@ namespace PeriDeal
       values += (d > 0 ? ", " : "") + compiled->names[d] + " = " + number_text(p[d]);
     // Properties of a temperature are asked for without a time.
     const bool hides_time = !values.empty() || (compiled->uses_temperature && !compiled->uses_time);
-    report_formula_error((where.empty() ? "The" : "Entry " + where + ": the") + " value of '" +
-                         formula + "' is not finite at " +
-                         (values.empty() ? point_text(p) : values) +
-                         (hides_time ? "" : ", t = " + number_text(t)) +
-                         (compiled->uses_temperature ? ", T = " + number_text(temperature) : "") +
-                         ". Change the formula so that it is a number everywhere.");
+    table_fault()         = {};
+    compiled->value(); // for what a table has to say
+    const std::string remedy = table_fault().table == nullptr ?
+                                 " Change the formula so that it is a number everywhere." :
+                                 table_fault().text();
+    report_formula_error(
+      (where.empty() ? "The" : "Entry " + where + ": the") + " value of '" + formula +
+      "' is not finite at " + (values.empty() ? point_text(p) : values) +
+      (hides_time ? "" : ", t = " + number_text(t)) +
+      (compiled->uses_temperature ? ", T = " + number_text(temperature) : "") + "." + remedy);
   }
 
 
@@ -427,6 +487,15 @@ namespace PeriDeal
   const std::string &Expression::text() const
   {
     return formula;
+  }
+
+
+  bool Expression::is_reserved(const std::string &name)
+  {
+    mu::Parser parser;
+    define_names(parser);
+    return has(std::vector<std::string>{"x", "y", "z", "t", "T"}, name) ||
+           parser.GetFunDef().count(name) > 0 || parser.GetConst().count(name) > 0;
   }
 
 

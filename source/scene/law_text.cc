@@ -15,9 +15,10 @@ namespace PeriDeal
       switch (law.kind)
         {
           case SolidLaw::linear:
-            return !law.orthotropy.young.empty() ? "linear, orthotropic" :
-                   is_full && by_elements        ? "linear (Saint Venant and Kirchhoff)" :
-                                                   "";
+            return !law.orthotropy.young.empty()          ? "linear, orthotropic" :
+                   is_full && by_elements                 ? "linear (Saint Venant and Kirchhoff)" :
+                   material.given.depend_on_temperature() ? "linear" :
+                                                            "";
           case SolidLaw::viscoelastic:
             return "viscoelastic (Prony), terms: " + std::to_string(law.relaxation.size());
           case SolidLaw::plastic:
@@ -44,6 +45,8 @@ namespace PeriDeal
     std::string text = kind_text(body.material, body.elasticity.has_full_kinematics(), by_elements);
     if (text.empty())
       return text;
+    if (body.material.given.depend_on_temperature())
+      text += ", moduli of the temperature";
     const SolidLaw    kind      = body.material.law.kind;
     const bool        of_bonds  = kind == SolidLaw::softening || kind == SolidLaw::formula;
     const std::string in_points = "at the quadrature points of elements",

@@ -41,7 +41,7 @@ namespace PeriDeal
 
     // Of what entries say.
     const std::string two =
-      " Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
+      " T is for `Law = linear` and `plastic`. Elasticity needs exactly two of the four moduli, in 1D or the Young modulus alone; they are those of the three-dimensional solid, also in 1D and 2D.";
     const std::string formula = ": a number or a formula of x, y, z.";
     const std::string of_warmth =
       ": a number or a formula of x, y, z and T, the temperature where it is computed, else the Temperature change that is given (section `Elasticity`).";
@@ -138,18 +138,19 @@ namespace PeriDeal
       "Moisture only: the concentration at wetness 1, a number or a formula of x, y, z. With Conductivity it is for the concentration field and the weight alone, and the flux is -Conductivity x grad(wetness); with Diffusivity it is part of the conductivity and the storage. The wetness is continuous where it jumps.";
     declare(interface_rule, "Interface rule", "arithmetic", {"minimum", "arithmetic", "harmonic"}) =
       "Conductivity of a bond between unequal nodes: the smaller value, the mean, or the harmonic mean by the length of the bond in each phase.";
-    entry("Bulk modulus")  = "Pressure per relative change of volume" + formula + two;
-    entry("Shear modulus") = "Shear stress per change of angle" + formula + two;
-    entry("Young modulus") = "Stress per strain of a bar" + formula + two;
+    entry("Bulk modulus")  = "Pressure per relative change of volume" + of_warmth + two;
+    entry("Shear modulus") = "Shear stress per change of angle" + of_warmth + two;
+    entry("Young modulus") = "Stress per strain of a bar" + of_warmth + two;
     entry("Poisson ratio") =
-      "Contraction of a bar per its extension" + formula +
+      "Contraction of a bar per its extension" + of_warmth +
       " Greater than -1 and less than 0.5; in plane stress and in bars it may be 0.5." + two;
     for (const OrthotropicEntry &of : orthotropic_entries())
       declare(of.name, EntryType::list, of.name == "Material angle" ? "0" : "", of.unit) =
         of.words +
         " Numbers or formulas of x, y, z; with `Law = linear`, in finite elements and correspondence.";
     entry("Thermal expansion", "0") =
-      "Strain per `Temperature change` (section `Elasticity`)" + formula;
+      "Strain per `Temperature change`, the mean coefficient from the reference temperature to T" +
+      of_warmth;
     entry("Fracture energy") =
       "Energy per area of a new crack" + of_changes +
       " The stretch (or Criterion) at which bonds break follows from it. Without this and Critical stretch they do not break.";
@@ -822,16 +823,17 @@ namespace PeriDeal
 
 
   template <int dim>
-  Moduli Material::moduli(const dealii::Point<dim> &p) const
+  Moduli Material::moduli(const dealii::Point<dim> &p, const double T) const
   {
     if (!law.orthotropy.young.empty())
       return mean_moduli(law.orthotropy, p);
-    const double a = given.properties[0].value(p), b = given.properties[1].value(p);
+    const double a = given.properties[0].value(p, T), b = given.properties[1].value(p, T);
     // Constant ones have been checked.
     const std::string fault = uniform_moduli() ? "" : given.fault(a, b);
     if (!fault.empty())
-      report_formula_error("Entry " + where(name_of(given.which[a > 0. ? 1 : 0])) + ", at " +
-                           point_text(p) + ": " + fault);
+      report_formula_error(
+        "Entry " + where(name_of(given.which[a > 0. ? 1 : 0])) + ", at " + point_text(p) +
+        (given.depend_on_temperature() ? ", T = " + number_text(T) : "") + ": " + fault);
     return moduli_from(given.which[0], a, given.which[1], b);
   }
 
@@ -839,7 +841,7 @@ namespace PeriDeal
 
 #define PERIDEAL_TEMPLATES(dim)                                                           \
   template double Material::storage<dim>(const dealii::Point<dim> &, const double) const; \
-  template Moduli Material::moduli<dim>(const dealii::Point<dim> &) const;
+  template Moduli Material::moduli<dim>(const dealii::Point<dim> &, const double) const;
   PERIDEAL_FOR_EACH_DIM(PERIDEAL_TEMPLATES)
 #undef PERIDEAL_TEMPLATES
 } // namespace PeriDeal

@@ -639,6 +639,8 @@ namespace PeriDeal
       if (scene.cracks.change() && (scene.time.steady || scene.peridynamics.horizon > 0.))
         return "cracks that grow or change ('Growth', 'Transmission' in section 'Cracks') in a steady state, or with a "
                "horizon that is a length";
+      if (scene.moduli_change())
+        return "moduli that depend on a computed temperature (section 'Material')";
       if (scene.elasticity.computes_temperature &&
           (scene.warms_slowly() || !scene.cracks.cracks.empty()))
         return "a computed temperature ('Temperature change' in section 'Elasticity') that changes with time, or with cracks";

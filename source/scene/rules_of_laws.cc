@@ -4,6 +4,7 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/scene/rules.h>
 
+#include <array>
 #include <cmath>
 
 namespace PeriDeal
@@ -111,6 +112,55 @@ namespace PeriDeal
     }
 
 
+    /** The entry of the two moduli in whose formula T is, if it is in some. */
+    std::string warm_modulus(const Material &material)
+    {
+      constexpr std::array<const char *, 4> names{
+        {"Bulk modulus", "Shear modulus", "Young modulus", "Poisson ratio"}}; // as Modulus
+      const bool is_first = material.given.properties[0].depends_on_temperature();
+      return names[static_cast<unsigned int>(material.given.which[is_first ? 0 : 1])];
+    }
+
+
+    /** Moduli and thermal expansion with T. */
+    template <int dim>
+    void refuse_warm_material(const BodyParameters<dim> &body, const bool coupled)
+    {
+      const Material &material    = body.material;
+      const bool      warm_moduli = material.given.depend_on_temperature(),
+                 warm_expansion   = material.thermal_expansion.depends_on_temperature();
+      const std::string modulus   = warm_modulus(material);
+      for (const auto &[is_so, entry] :
+           {std::make_pair(warm_moduli, modulus),
+            std::make_pair(warm_expansion, std::string("Thermal expansion"))})
+        {
+          const auto refuse = [&, &entry = entry, &is_so = is_so](const bool         also,
+                                                                  const std::string &why) {
+            material.refuse(is_so && also, entry, "depends on T, " + why);
+          };
+          refuse(
+            !is_warm_body(body),
+            "but the temperature does not change: 'Temperature change' in section 'Elasticity' is 0.");
+          refuse(
+            body.elasticity.absolute_reference.has_value(),
+            "which 'Heat of deformation' (section 'Elasticity') does not know. Leave one of them out.");
+        }
+      const auto refuse = [&](const bool also, const std::string &why) {
+        material.refuse(warm_moduli && also, modulus, "depends on T, " + why);
+      };
+      refuse(material.law.kind != SolidLaw::linear && !material.law.yields(),
+             "which 'Law = " + material.text("Law") +
+               "' does not know; 'linear' and 'plastic' do. Use one of these, or leave T out.");
+      refuse(
+        coupled && body.moduli_change(),
+        "and 'Temperature change' (section 'Elasticity') is 'computed', but in 'Models = coupled' moduli are those of a temperature that is given. Use 'finite elements' or 'peridynamics', or a formula as 'Temperature change'.");
+      refuse(
+        body.moduli_change() &&
+          (material.fracture_energy.has_value() || !material.law.interfaces.empty()),
+        "and 'Temperature change' (section 'Elasticity') is 'computed', but the stretch that follows from 'Fracture energy' or 'Interfaces' is that of moduli that stay. Give 'Critical stretch', which may depend on T, too.");
+    }
+
+
     template <int dim>
     void refuse_user_law(const BodyParameters<dim> &body,
                          const bool                 by_elements,
@@ -180,7 +230,7 @@ namespace PeriDeal
           body.material.refuse(
             dim == 2 && body.elasticity.plane == PlaneState::stress &&
               body.material.uniform_moduli() &&
-              !std::isfinite(body.material.moduli(dealii::Point<dim>()).bulk),
+              !std::isfinite(body.moduli(dealii::Point<dim>()).bulk),
             "Poisson ratio",
             "is 0.5, but 'Law = hyperelastic' has a finite bulk modulus. Use less, such as 0.499.");
         }
@@ -289,6 +339,7 @@ namespace PeriDeal
     refuse_correspondence(body, by_elements, coupled);
     refuse_orthotropic_body(body, by_elements, coupled);
     refuse_large_deformations(body, by_elements, coupled);
+    refuse_warm_material(body, coupled);
     if (kind == SolidLaw::linear)
       return;
     body.coupling.refuse(

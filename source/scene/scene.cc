@@ -154,6 +154,7 @@ namespace PeriDeal
   std::vector<SceneSection *> Scene<dim>::sections()
   {
     return {&general,
+            &formulas,
             &domain,
             &material,
             &material.phases,
@@ -193,6 +194,7 @@ namespace PeriDeal
   {
     general.parse();
     general.dimension    = dim;
+    formulas.parse(domain.files.folder, domain.files.communicator);
     const bool has_holes = domain.text("Shape") == "plate with hole" ||
                            !domain.text("Holes").empty();
     if (general.automatic && has_holes) // a mesh that is chosen follows the rims
@@ -314,5 +316,22 @@ namespace PeriDeal
   }
 
 
+  template <int dim>
+  std::vector<std::pair<std::string, std::string>> files_of(const Scene<dim> &scene)
+  {
+    std::vector<std::pair<std::string, std::string>> files;
+    const auto add = [&](const std::string &entry, const std::string &file_name) {
+      if (!file_name.empty())
+        files.emplace_back(entry, file_name);
+    };
+    add("Domain/Mesh file", scene.domain.files.mesh);
+    add("Domain/Image", scene.domain.files.image);
+    for (const FormulaTable &table : scene.formulas.names->tables)
+      add("Formulas/Tables: " + table.name, table.file);
+    return files;
+  }
+
+
+  PERIDEAL_INSTANTIATE_FUNCTION(files_of);
   PERIDEAL_INSTANTIATE_CLASS(struct Scene);
 } // namespace PeriDeal

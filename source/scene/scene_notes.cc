@@ -39,8 +39,7 @@ namespace PeriDeal
         return std::numeric_limits<double>::quiet_NaN();
       try
         {
-          return std::sqrt(scene.material.moduli(middle).young() /
-                           scene.material.density.value(middle));
+          return std::sqrt(scene.moduli(middle).young() / scene.material.density.value(middle));
         }
       catch (const UserError &)
         {

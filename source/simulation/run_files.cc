@@ -6,6 +6,7 @@
 #include <perideal/base/diverged.h>
 #include <perideal/base/instantiate.h>
 #include <perideal/base/process_end.h>
+#include <perideal/base/text_file.h>
 #include <perideal/simulation/run_files.h>
 
 #include <sstream>
@@ -19,6 +20,12 @@ namespace PeriDeal
 
   namespace
   {
+    std::string copy_of_table(const FormulaTable &table)
+    {
+      return "tables/" + table.name + ".csv";
+    }
+
+
     /** What a run of the scene writes under names that are known beforehand, and its report. */
     template <int dim>
     std::vector<std::string> names_of_results(const Scene<dim> &scene)
@@ -32,6 +39,8 @@ namespace PeriDeal
       add(!scene.output.line.empty(), "line.csv");
       add(!scene.output.grid.empty(), "grid.csv");
       add(static_cast<bool>(scene.domain.image), "image_as_read.png");
+      for (const FormulaTable &table : scene.formulas.names->tables)
+        add(true, copy_of_table(table));
       for (const ModelKind model : scene.general.models)
         {
           const std::string series = series_of(scene.general.name_of(model));
@@ -52,12 +61,8 @@ namespace PeriDeal
                                                           const MPI_Comm    communicator)
     {
       std::map<std::string, std::string> sums;
-      const auto add = [&](const std::string &entry, const std::string &file_name) {
-        if (!file_name.empty())
-          sums[entry] = checksum_of_file(file_name, communicator);
-      };
-      add("Domain/Mesh file", scene.domain.files.mesh);
-      add("Domain/Image", scene.domain.files.image);
+      for (const auto &[entry, file_name] : files_of(scene))
+        sums[entry] = checksum_of_file(file_name, communicator);
       return sums;
     }
 
@@ -101,6 +106,14 @@ namespace PeriDeal
   {
     folder.write("scene.prm", scene_with_defaults());
     write_image_as_read(scene, folder);
+    for (const FormulaTable &table : scene.formulas.names->tables)
+      if (folder.writes())
+        {
+          std::string       fault; // the file has been there before
+          const std::string text = read_file(table.file, most_bytes_of_data, fault);
+          if (fault.empty())
+            folder.write(copy_of_table(table), text);
+        }
     if (folder.writes())
       folder.claim("report.html"); // the scripts that draw it keep no list
     folder.check();

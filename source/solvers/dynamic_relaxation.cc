@@ -77,7 +77,12 @@ namespace PeriDeal
 
       void operator_changed() override
       {
-        outdated = op.has_growing_cracks(); // what only breaks gets no stiffer
+        outdated = outdated || op.has_growing_cracks(); // what only breaks gets no stiffer
+      }
+
+      void stiffness_changed() override
+      {
+        outdated = true;
       }
 
     private:

@@ -217,7 +217,7 @@ namespace PeriDeal
       }
     // An outdated preconditioner makes iterations slower, never wrong: making one costs as much as
     // dozens of iterations.
-    const bool worn = outdated && is_slow;
+    const bool worn = outdated && (is_slow || built_stiffness < 0.); // slow, or not used yet
     if (worn)
       {
         preconditioner = std::make_unique<MultigridPreconditioner>(op, direct_up_to);

@@ -44,6 +44,11 @@ namespace PeriDeal
         is_untried = false;
       }
 
+      void stiffness_changed() override
+      {
+        solver.operator_changed();
+      }
+
       void exchange(Archive &archive) override
       {
         solver.exchange(archive);

@@ -27,11 +27,11 @@ namespace PeriDeal
   {
     /**
      * Of the program, the processes (times and memory depend on them), the scene, its entries and
-     * its mesh file or image. Collective.
+     * its files. Collective.
      */
-    std::string hash_of(const CheckedRow  &checked,
-                        const std::string &mesh_file,
-                        const MPI_Comm     communicator)
+    std::string hash_of(const CheckedRow                                       &checked,
+                        const std::vector<std::pair<std::string, std::string>> &files,
+                        const MPI_Comm                                          communicator)
     {
       std::string hash;
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
@@ -44,7 +44,9 @@ namespace PeriDeal
           for (const auto &[entry, value] : checked.entries)
             if (entry != "Output directory")
               all += entry + "=" + value + "\n";
-          hash = text_hash(all + (mesh_file.empty() ? "" : content_of(mesh_file)));
+          for (const auto &entry_and_file : files)
+            all += content_of(entry_and_file.second);
+          hash = text_hash(all);
         }
       return dealii::Utilities::MPI::broadcast(communicator, hash, 0);
     }
@@ -86,15 +88,12 @@ namespace PeriDeal
     try
       {
         checked.text = read_scene(row.scene, overrides, communicator);
-        std::string mesh_file;
+        std::vector<std::pair<std::string, std::string>> files;
         with_scene(checked.text, [&](const auto &scene) {
-          if (!scene.domain.has_lattice())
-            mesh_file = scene.domain.files.mesh;
-          else if (scene.domain.shape == Shape::image)
-            mesh_file = scene.domain.files.image;
+          files           = files_of(scene);
           checked.entries = entries_of_parsed_scene();
         });
-        checked.hash = hash_of(checked, mesh_file, communicator);
+        checked.hash = hash_of(checked, files, communicator);
       }
     catch (const UserError &error)
       {

@@ -378,11 +378,19 @@ namespace PeriDeal
         scan.see(material.conductivity, of_material);
       if (!scene.deforms)
         return;
-      scan.see(material.thermal_expansion, of_material);
+      if (!material.thermal_expansion.is_constant())
+        scan.see(
+          [&](const Point<dim> &p, double) {
+            return material.thermal_expansion.value(p,
+                                                    scene.elasticity.reference_temperature +
+                                                      scene.elasticity.temperature_change.value(p));
+          },
+          false,
+          of_material);
       scan.see(scene.elasticity.temperature_change, Jumps::matter);
       if (!material.uniform_moduli())
         for (const auto modulus : {&Moduli::bulk, &Moduli::shear})
-          scan.see([&](const Point<dim> &p, double) { return material.moduli(p).*modulus; },
+          scan.see([&](const Point<dim> &p, double) { return scene.moduli(p).*modulus; },
                    false,
                    of_material);
     }

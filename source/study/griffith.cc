@@ -90,7 +90,7 @@ namespace PeriDeal
       {
         const auto [crack, number]       = crack_and_end(name);
         const dealii::Point<dim> &tip    = cracks.cracks[crack][number];
-        const Moduli              moduli = scene.material.moduli(tip);
+        const Moduli              moduli = scene.moduli(tip);
         const double              nu     = moduli.poisson();
         const double              young =
           moduli.young() / (scene.elasticity.plane == PlaneState::stress ? 1. : 1. - nu * nu);

@@ -25,8 +25,10 @@ namespace PeriDeal
       Properties      found;
       if (scene.deforms)
         {
-          const Moduli moduli = material.moduli(p);
-          found               = {moduli.bulk, moduli.shear, material.thermal_expansion.value(p)};
+          const Moduli moduli = scene.moduli(p);
+          const double T =
+            scene.elasticity.reference_temperature + scene.elasticity.temperature_change.value(p);
+          found = {moduli.bulk, moduli.shear, material.thermal_expansion.value(p, T)};
           if (!scene.elasticity.is_static())
             found.push_back(material.density.value(p));
           return found;

@@ -269,7 +269,7 @@ namespace PeriDeal
         scene.domain.lower + 0.5 * (scene.domain.upper - scene.domain.lower);
       if (!scene.deforms)
         return scene.material.conductivity.value(middle) * range * volume / (longest * longest);
-      return scene.material.moduli(middle).young() * range / std::sqrt(longest);
+      return scene.moduli(middle).young() * range / std::sqrt(longest);
     }
   } // namespace
 

@@ -22,7 +22,7 @@ namespace PeriDeal
     template <int dim>
     double modulus_at(const Scene<dim> &scene, const Point<dim> &p)
     {
-      return scene.deforms ? scene.material.moduli(p).shear : scene.material.conductivity.value(p);
+      return scene.deforms ? scene.moduli(p).shear : scene.material.conductivity.value(p);
     }
 
 

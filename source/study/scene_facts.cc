@@ -87,8 +87,7 @@ namespace PeriDeal
     double wave_speed(const Scene<dim> &scene)
     {
       const dealii::Point<dim> middle = 0.5 * (scene.domain.lower + scene.domain.upper);
-      return std::sqrt(scene.material.moduli(middle).young() /
-                       scene.material.density.value(middle));
+      return std::sqrt(scene.moduli(middle).young() / scene.material.density.value(middle));
     }
   } // namespace
 

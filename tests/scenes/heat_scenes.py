@@ -7,8 +7,11 @@
 Bounds that follow from no theory are at most 1.5 times the gap that was measured; the comment beside them says which.
 """
 
+import os
+
 import insulated_crack
-from scene_test import QUIET, Comparison, check, check_close, check_message, observed_orders, print_table, run_parts, run_scene
+from scene_test import (QUIET, SOURCE_DIR, Comparison, check, check_close, check_message, observed_orders, print_table, run_parts, run_scene,
+                        temporary_folder, write_file)
 
 STEADY = {"Time/Steady": "true", "Output/Write at": "", "Solver/Tolerance": "1e-12"}
 
@@ -316,6 +319,34 @@ def temperature_dependent():
     table.show()
 
 
+def tables():
+    """What formulas read off files is what formulas make themselves; the tables lie in the results, and know their ends."""
+    wall = {"Time/End time": "0.3", "Domain/Cells": "20, 5", "Output/Write at": "", "Reference/Solution": "",
+            "Boundary conditions/Dirichlet": "left: 0; right: min(t/0.1, 1)"}
+    named = {"Formulas/Constants": "first: 1", "Formulas/Tables": "k: k.csv, temperature, k ; c: k.csv, temperature, c, hold ; ramp: ramp.csv",
+             "Material/Conductivity": "k(T)*first", "Material/Heat capacity": "c(T)",
+             "Boundary conditions/Dirichlet": "left: 0; right: ramp(t)"}
+    folder = temporary_folder()
+    write_file("k.csv", "temperature; k; c\n-1; 0; 0.5\n0.5; 1.5; 1.25\n2; 3; 2\n", folder)
+    ramp = write_file("ramp.csv", "# s, K\n0,0\n0.1,1\n10,1\n", folder)
+    with open(os.path.join(SOURCE_DIR, "prm/heat/temperature_dependent.prm")) as file:
+        scene = write_file("wall.prm", file.read(), folder)
+    table = Comparison("Numbers and formulas of files, over those that formulas have themselves")
+    plain = run_scene(scene, wall)
+    for ranks in (1, 2):
+        run = run_scene(scene, {**wall, **named}, ranks=ranks)
+        for model in ("finite elements", "peridynamics"):
+            for x in (0.25, 0.5, 0.75):
+                table.add(f"{model}, {ranks} processes, x = {x}", run.probe(model, (x, 0.125), 0.3), plain.probe(model, (x, 0.125), 0.3), relative=1e-11)
+        with open(os.path.join(run.folder, "tables", "ramp.csv")) as copy, open(ramp) as file:
+            check(copy.read() == file.read(), "tables lie in the results")
+    table.show()
+    write_file("ramp.csv", "0,0\n0.1,1\n0.2,1\n", folder)
+    for ranks in (1, 2):
+        failed = run_scene(scene, {**wall, **named}, ranks=ranks, expect_error=True)
+        check_message(failed, "'Dirichlet'", "ramp(t)", "The table 'ramp'", "from 0 to 0.2", "hold", what="a table that ends before the run")
+
+
 def narrow_layer():
     """A layer of a tenth of the side, held by sources in it: both models are of second order."""
     cells = (40, 80, 160)
@@ -328,4 +359,4 @@ def narrow_layer():
 
 if __name__ == "__main__":
     run_parts(layers, composite, harmonics, varying_conductivity, plate_with_hole, convection, gmsh_plate, generated_ring,
-              block_with_crack, example_3, bars_2010, closing_crack, temperature_dependent, narrow_layer)
+              block_with_crack, example_3, bars_2010, closing_crack, temperature_dependent, tables, narrow_layer)

@@ -150,7 +150,12 @@ Material/Poisson ratio= => Material/Young modulus | a.prm: | is the only one
 Material/Bulk modulus=100 => Material/Poisson ratio | one of 3 | exactly two
 Material/Young modulus=-200 => Material/Young modulus | greater than 0
 Material/Young modulus=1 + t => Material/Young modulus | depends on t
-Material/Young modulus=1 + T => Material/Young modulus | depends on T
+Material/Young modulus=1 + T => Material/Young modulus | depends on T | 'Temperature change'
+Material/Poisson ratio=0.1 + T/1000 => Material/Poisson ratio | depends on T | 'Temperature change'
+Material/Thermal expansion=1e-5*(1 + T) => Material/Thermal expansion | depends on T | 'Temperature change'
+Material/Thermal expansion=1e-5*(1 + t) & Elasticity/Temperature change=10 => Material/Thermal expansion | depends on t
+Material/Young modulus=1 + T & Elasticity/Temperature change=10 =>
+Material/Thermal expansion=1e-5*(1 + T) & Elasticity/Temperature change=10 =>
 Material/Density=1 + T => Material/Density | no unknown | elasticity
 Material/Poisson ratio=0.51 => Material/Poisson ratio | 0.51 | at most 0.5
 Material/Poisson ratio=-1 => Material/Poisson ratio | greater than -1

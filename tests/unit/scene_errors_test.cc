@@ -55,7 +55,8 @@ Node spacing = 0.3 & Upper corner = 1, 1.41421356 => Node spacing | give 'Cells'
     const std::string moduli =
       "subsection Material\nset Young modulus = 1\nset Poisson ratio = 0.3\nend\n";
     const std::string elastic = "set Physics = elasticity\n", place = "x, y, z", all = "x, y, z, t",
-                      material = "x, y, z, T";
+                      material = "x, y, z, T",
+                      warm     = "\nend\nsubsection Elasticity\nset Temperature change = 1";
     const std::vector<Case>
       of_heat       = {{"Material", "Conductivity = 1 + #", material},
                        {"Material", "Density = 1 + #", material},
@@ -71,8 +72,8 @@ Node spacing = 0.3 & Upper corner = 1, 1.41421356 => Node spacing | give 'Cells'
                        {"Boundary conditions", "Traction = right: #, 0", all},
                        {"Boundary conditions", "Displacement = left: #, 0", all},
                        {"Boundary conditions", "Displacement = left: if(y + # > 2, 0, free), 0", place},
-                       {"Material", "Thermal expansion = 1 + #", place},
-                       {"Material", "Young modulus = 1 + #\nset Poisson ratio = 0.3", place}};
+                       {"Material", "Thermal expansion = 1 + #" + warm, material},
+                       {"Material", "Young modulus = 1 + #\nset Poisson ratio = 0.3" + warm, material}};
     const auto with = [](const Case &one, const std::string &name) {
       std::string entry = one.entry;
       entry.replace(entry.find('#'), 1, name);

@@ -241,7 +241,8 @@ namespace PeriDeal
                         entry.type == EntryType::choice || entry.type == EntryType::choices ||
                         entry.name == "Symmetry" || entry.name == "Parts" ||
                         entry.name == "Regions" || entry.name == "Interfaces" ||
-                        entry.name == "Image colors" || !entry.unit.empty())
+                        entry.name == "Image colors" || entry.name == "Constants" ||
+                        entry.name == "Tables" || !entry.unit.empty())
               << entry.name;
           }
       }

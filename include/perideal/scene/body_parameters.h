@@ -56,6 +56,25 @@ namespace PeriDeal
      */
     double horizon() const;
 
+    /**
+     * Moduli at a place where the temperature has changed by this (section `Elasticity`), or by
+     * what is given there; nothing before it has been computed. Errors as Material::moduli().
+     */
+    Moduli moduli(const dealii::Point<dim> &p, const double temperature_change) const;
+    Moduli moduli(const dealii::Point<dim> &p) const;
+
+    /**
+     * alpha(T) dT: by what a change of the temperature strains the body where nothing holds it,
+     * alpha the mean coefficient between the reference and this temperature.
+     */
+    double free_expansion(const dealii::Point<dim> &p, const double temperature_change) const;
+
+    /** Moduli follow a temperature that is computed, and are others at each step. */
+    bool moduli_change() const
+    {
+      return elasticity.computes_temperature && material.given.depend_on_temperature();
+    }
+
     /** Ends of cracks cut bonds and cells in part (solids in 2D; check_tips_in_part()). */
     bool cuts_in_part_at_tips() const;
 

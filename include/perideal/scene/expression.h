@@ -16,8 +16,9 @@ namespace PeriDeal
 {
   /**
    * A number given as a formula of x, y, z and t (muparser syntax), compiled when it is read so
-   * that a mistake in it is reported with its position before anything runs. Copies and others of
-   * the same text share the compiled form. Not thread safe.
+   * that a mistake in it is reported with its position before anything runs. It knows the names of
+   * names_of_formulas(), but for those of its own variables. Copies and others of the same text
+   * share the compiled form. Not thread safe.
    */
   class Expression
   {
@@ -67,13 +68,16 @@ namespace PeriDeal
     bool depends_on_temperature() const;
 
     /**
-     * Where to look for jumps and peaks, ascending: its numbers, with both signs, sums and
-     * differences of two that follow each other in the text, and the middles in between. Empty
-     * without T.
+     * Where to look for jumps and peaks, ascending: its numbers and the places of its tables, with
+     * both signs, sums and differences of two that follow each other in the text, and the middles
+     * in between. Empty without T.
      */
     const std::vector<double> &marked_temperatures() const;
 
     const std::string &text() const;
+
+    /** Names that mean something in every formula: of variables, functions and constants. */
+    static bool is_reserved(const std::string &name);
 
   private:
     void compile(const std::string &known, const bool with_temperature);

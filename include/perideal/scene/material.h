@@ -20,9 +20,10 @@ namespace PeriDeal
 {
   /**
    * Section `Material`: what diffusion takes, conductivity and storage (Density x Heat capacity) as
-   * expressions of x, y, z and the temperature T; what elasticity takes, two moduli, density,
-   * thermal expansion and strength as expressions of x, y, z; and in its subsection `Phases` those
-   * of parts of the body. Properties that a physics does not take are read and not used.
+   * expressions of x, y, z and the temperature T; what elasticity takes, two moduli and thermal
+   * expansion, likewise, density and strength as expressions of x, y, z; and in its subsection
+   * `Phases` those of parts of the body. Properties that a physics does not take are read and not
+   * used.
    */
   class Material : public SceneSection
   {
@@ -139,11 +140,12 @@ namespace PeriDeal
     bool depends_on_temperature() const;
 
     /**
-     * Elasticity only. Throws the UserError of formulas whose values are out of range at the point,
-     * or defers it (report_formula_error()).
+     * Elasticity only, at a temperature, which matters where T is in their formulas. Throws
+     * the UserError of formulas whose values are out of range at the point, or defers it
+     * (report_formula_error()). What knows the body asks it (BodyParameters::moduli()).
      */
     template <int dim>
-    Moduli moduli(const dealii::Point<dim> &p) const;
+    Moduli moduli(const dealii::Point<dim> &p, const double temperature = 0.) const;
 
     /** For programs: two moduli of a body without phases, numbers or functions of x, y, z. */
     void set_moduli(const Modulus     a,
@@ -178,16 +180,6 @@ namespace PeriDeal
      */
     void require_storage();
 
-  private:
-    Expression read(const std::string &entry, const Physics physics) const;
-
-    std::optional<MaterialProperty> optional_property(const std::string &entry,
-                                                      const Physics      physics) const;
-
-    void parse_breaking(const Physics physics);
-
-    void parse_moduli(const unsigned int dim, const PlaneState plane);
-
     /** Two moduli, of which the others follow. */
     struct GivenModuli
     {
@@ -197,11 +189,27 @@ namespace PeriDeal
 
       bool are_uniform() const;
 
+      /** T is in some formula. */
+      bool depend_on_temperature() const
+      {
+        return properties[0].depends_on_temperature() || properties[1].depends_on_temperature();
+      }
+
       /** What is wrong with two numbers, or nothing. */
       std::string fault(const double value_a, const double value_b) const;
     };
 
-    GivenModuli given;
+    GivenModuli given; // set by parse() or set_moduli()
+
+  private:
+    Expression read(const std::string &entry, const Physics physics) const;
+
+    std::optional<MaterialProperty> optional_property(const std::string &entry,
+                                                      const Physics      physics) const;
+
+    void parse_breaking(const Physics physics);
+
+    void parse_moduli(const unsigned int dim, const PlaneState plane);
   };
 
 

@@ -5,6 +5,7 @@
 
 #include <perideal/scene/body_parameters.h>
 #include <perideal/scene/control.h>
+#include <perideal/scene/formula_names.h>
 #include <perideal/scene/lists.h>
 #include <perideal/scene/physics.h>
 
@@ -78,6 +79,7 @@ namespace PeriDeal
     using BodyParameters<dim>::finite_elements;
 
     General                 general;
+    Formulas                formulas;
     TimeControl             time;
     SolverControlParameters solver;
     OutputControl<dim>      output;
@@ -118,6 +120,11 @@ namespace PeriDeal
     /** Those of a run, for the parameters. */
     void take_times();
   };
+
+
+  /** The files that a scene reads besides itself, by the entry that names them. */
+  template <int dim>
+  std::vector<std::pair<std::string, std::string>> files_of(const Scene<dim> &scene);
 
 
   /** Do what concerns Scene::heat: a UserError from there says so. Not collective. */

@@ -142,6 +142,14 @@ namespace PeriDeal
      */
     void renew(Vector &u);
 
+    /** Moduli have changed. Not collective. */
+    void stiffness_changed()
+    {
+      solver->stiffness_changed();
+      if (breaks.motion)
+        breaks.motion->operator_changed();
+    }
+
     /** Within a step: there is a rest to go_on() with. */
     bool is_inside_step() const
     {

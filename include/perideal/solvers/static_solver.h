@@ -50,6 +50,12 @@ namespace PeriDeal
     /** K is no longer that of the last solution. Not collective. */
     virtual void operator_changed() {}
 
+    /** The same, and K may have become stiffer than it has ever been. Not collective. */
+    virtual void stiffness_changed()
+    {
+      operator_changed();
+    }
+
     /** What the next solution depends on besides the operator, which has its state. Collective. */
     virtual void exchange(Archive &archive)
     {

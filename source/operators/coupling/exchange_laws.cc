@@ -142,7 +142,7 @@ namespace PeriDeal
   CellStiffness<dim> ElasticBonds<dim>::stiffness(const BodyParameters<dim> &body)
   {
     return {[&body](const Point<dim> &p, const double) {
-              return bond_part(body.material.moduli(p), dim, body.elasticity.plane);
+              return bond_part(body.moduli(p), dim, body.elasticity.plane);
             },
             body.material.uniform_moduli(),
             nullptr,

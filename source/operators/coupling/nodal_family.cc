@@ -12,12 +12,14 @@ namespace PeriDeal
   using namespace dealii;
 
   template <int dim>
-  StressLaw::Tangent linear_stiffness(const BodyParameters<dim> &body, const Point<dim> &p)
+  StressLaw::Tangent linear_stiffness(const BodyParameters<dim> &body,
+                                      const Point<dim>          &p,
+                                      const double               temperature)
   {
     const StressState                kind       = stress_state_of(dim, body.elasticity.plane);
     const Material::Law::Orthotropy &orthotropy = body.material.law.orthotropy;
     if (orthotropy.young.empty())
-      return isotropic_stiffness(body.material.moduli(p), kind);
+      return isotropic_stiffness(body.material.moduli(p, temperature), kind);
     const StressLaw::Tangent C = orthotropic_stiffness(orthotropy, p);
     return kind == StressState::plane_stress ? in_plane_stress(C) : C;
   }
@@ -25,7 +27,10 @@ namespace PeriDeal
 
   template <int dim>
   NodalFamily<dim>::NodalFamily(const BodyParameters<dim> &body, const Point<dim> &p)
-    : stiffness(in_body<dim>(linear_stiffness(body, p)))
+    : stiffness(in_body<dim>(linear_stiffness(body,
+                                              p,
+                                              body.elasticity.reference_temperature +
+                                                body.elasticity.temperature_change.value(p))))
     , shear(soft_shear(stiffness))
   {}
 

@@ -41,7 +41,7 @@ namespace PeriDeal
     laws.resize(nodes.n_owned());
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       if (acts[i] && nodal == nullptr)
-        laws[i] = state_law(body.material.moduli(nodes.position(i)), dim, body.elasticity.plane);
+        laws[i] = state_law(body.moduli(nodes.position(i)), dim, body.elasticity.plane);
   }
 
 

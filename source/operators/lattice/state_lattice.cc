@@ -18,6 +18,8 @@ namespace PeriDeal
            body.material.law.kind != SolidLaw::linear && !body.elasticity.is_correspondence() &&
                !relaxes_at_nodes(body) ?
              "with another 'Law' than 'linear' each bond answers by itself" :
+           body.moduli_change() && !body.elasticity.is_correspondence() ?
+             "moduli that follow a computed temperature change all the time" :
            body.elasticity.is_static() && body.material.breaks() ?
              "bonds may break in a body at rest" :
            body.peridynamics.corrects_elastic_bonds() ?

@@ -183,11 +183,11 @@ namespace PeriDeal
 
 
     template <int dim>
-    void let_flow_and_sum_of(const BondChunk &before,
-                             const double    *lost,
-                             const BondChunk &now,
-                             double          *plastic,
-                             ChunkSums       &sums)
+    void let_flow_and_sum_of(const BondChunk before,
+                             const double   *lost,
+                             const BondChunk now,
+                             double         *plastic,
+                             ChunkSums      &sums)
     {
       const D           d;
       const std::size_t lanes = hn::Lanes(d);
@@ -279,25 +279,29 @@ namespace PeriDeal
 
 
     template <int dim>
-    void add_far_of(const FarBond *bonds, const std::size_t n, double *const *to)
+    void add_to_far_ends_of(const BondChunk chunk,
+                            const double   *factors,
+                            const double   *remembered,
+                            double *const  *to)
     {
       const D           d;
       const std::size_t lanes = hn::Lanes(d);
       for (std::size_t first = 0; first < width; first += lanes)
         {
-          V sums[dim];
-          for (int a = 0; a < dim; ++a)
-            sums[a] = hn::Zero(d);
-          for (std::size_t k = 0; k < n; ++k)
+          const V factor = hn::LoadU(d, factors + first);
+          for (std::size_t bond = 0; bond < chunk.n_bonds; ++bond)
             {
-              const FarBond &bond = bonds[k];
-              const V factor = hn::Mul(hn::Set(d, bond.weight), hn::LoadU(d, bond.factors + first));
+              const V             share = hn::Mul(hn::Set(d, chunk.weights[bond]), factor);
+              const double *const from  = remembered + dim * width * bond + first;
+              ask_ahead<dim>(from);
               for (int a = 0; a < dim; ++a)
-                sums[a] =
-                  hn::MulAdd(factor, hn::LoadU(d, bond.remembered + a * width + first), sums[a]);
+                {
+                  double *const sum = to[a] + chunk.offsets[bond] + first;
+                  hn::StoreU(hn::MulAdd(share, hn::LoadU(d, from + a * width), hn::LoadU(d, sum)),
+                             d,
+                             sum);
+                }
             }
-          for (int a = 0; a < dim; ++a)
-            hn::StoreU(hn::Add(hn::LoadU(d, to[a] + first), sums[a]), d, to[a] + first);
         }
     }
 
@@ -331,9 +335,12 @@ namespace PeriDeal
   {                                                                                        \
     sum_products_of<dim>(chunk, elastic, products);                                        \
   }                                                                                        \
-  void add_far_##dim(const FarBond *bonds, const std::size_t n, double *const *to)         \
+  void add_to_far_ends_##dim(const BondChunk &chunk,                                       \
+                             const double    *factors,                                     \
+                             const double    *remembered,                                  \
+                             double *const   *to)                                          \
   {                                                                                        \
-    add_far_of<dim>(bonds, n, to);                                                         \
+    add_to_far_ends_of<dim>(chunk, factors, remembered, to);                               \
   }
     PERIDEAL_OF_DIMENSION(1)
     PERIDEAL_OF_DIMENSION(2)
@@ -353,7 +360,7 @@ namespace PeriDeal
     HWY_EXPORT(let_flow_and_sum_##dim);                                                     \
     HWY_EXPORT(keep_elastic_##dim);                                                         \
     HWY_EXPORT(sum_products_##dim);                                                         \
-    HWY_EXPORT(add_far_##dim);                                                              \
+    HWY_EXPORT(add_to_far_ends_##dim);                                                      \
     template <>                                                                             \
     void sum_elastic<dim>(const BondChunk &chunk, const double *plastic, ChunkSums &sums)   \
     {                                                                                       \
@@ -387,9 +394,12 @@ namespace PeriDeal
       HWY_DYNAMIC_DISPATCH(sum_products_##dim)(chunk, elastic, products);                   \
     }                                                                                       \
     template <>                                                                             \
-    void add_far<dim>(const FarBond *bonds, const std::size_t n, double *const *to)         \
+    void add_to_far_ends<dim>(const BondChunk &chunk,                                       \
+                              const double    *factors,                                     \
+                              const double    *remembered,                                  \
+                              double *const   *to)                                          \
     {                                                                                       \
-      HWY_DYNAMIC_DISPATCH(add_far_##dim)(bonds, n, to);                                    \
+      HWY_DYNAMIC_DISPATCH(add_to_far_ends_##dim)(chunk, factors, remembered, to);          \
     }
   PERIDEAL_DISPATCH(1)
   PERIDEAL_DISPATCH(2)

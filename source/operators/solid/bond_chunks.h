@@ -63,15 +63,13 @@ namespace PeriDeal
   template <int dim>
   void sum_products(const BondChunk &chunk, const double *elastic, double *products);
 
-  /** Bonds with the sites of a chunk at their far ends, all along one vector of the lattice. */
-  struct FarBond
-  {
-    const double *remembered; // of the far ends, of this bond
-    const double *factors;    // of the far ends
-    double        weight;     // w
-  };
-
-  /** Add up weight times factor times what is remembered. @param to dim rows of numbers */
+  /**
+   * Add weight times the factor of the site times what a bond remembers, at its far end.
+   * @param to dim padded grids, at the first site
+   */
   template <int dim>
-  void add_far(const FarBond *bonds, const std::size_t n, double *const *to);
+  void add_to_far_ends(const BondChunk &chunk,
+                       const double    *factors,
+                       const double    *remembered,
+                       double *const   *to);
 } // namespace PeriDeal

@@ -59,7 +59,7 @@ namespace PeriDeal
         SymmetricTensor<4, dim> stiffness;
         J2Plasticity::Beside    none;
         stresses.ask(i, trial.slopes[i], none, &stiffness);
-        shapes.add(stiffness, stiffness.norm() > 0.); // zero after a fault
+        shapes.set_stiffness(i, stiffness, stiffness.norm() > 0.); // zero after a fault
       }
     stresses.throw_faults();
     std::vector<unsigned int> all(n);
@@ -273,7 +273,15 @@ namespace PeriDeal
   void Correspondence<dim>::take_temperatures(const Vector &changes)
   {
     stresses.take_temperatures(changes);
-    trial.known    = false;
+    if (changes.size() > 0 && stresses.moduli_change())
+      {
+        for (unsigned int i = 0; i < shapes.size(); ++i)
+          shapes.set_stiffness(i, stresses.elastic(i), true);
+        std::vector<unsigned int> all(shapes.size());
+        std::iota(all.begin(), all.end(), 0U);
+        shapes.renew(all);
+      }
+    trial.known = false;
     accepted.take_warming(changes.size() > 0);
   }
 

@@ -108,16 +108,16 @@ namespace PeriDeal
       {
         const Point<dim> &p      = values.quadrature_point(q);
         const double      JxW    = values.JxW(q);
-        const Moduli      moduli = body.material.moduli(p);
-        // A bar has E alone.
-        const double lambda = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane),
-                     mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear;
-        double change       = 0.; // of the temperature
+        double            change = 0.; // of the temperature
         if (temperatures.size() == 0)
           change = body.elasticity.temperature_change.value(p);
         else
           for (unsigned int a = 0; a < n; ++a)
             change += temperatures(data.indices[a]) * values.shape_value(a, q);
+        const Moduli moduli = body.moduli(p, change);
+        // A bar has E alone.
+        const double lambda   = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane),
+                     mu       = dim == 1 ? 0.5 * moduli.young() : moduli.shear;
         const double strain   = stresses ? 0. : thermal_strain(body, p, change); // it is in them
         const double pressure = (dim * lambda + 2. * mu) * strain;
         const double density  = body.elasticity.is_static() ? 1. : body.material.density.value(p);
@@ -214,7 +214,7 @@ namespace PeriDeal
     sums.marked.compress(VectorOperation::max);
     bonds->add_to(sums);
     for_each([&](const Cell &cell, const Data &of_cell) {
-      const Moduli moduli = body.material.moduli(cell->center());
+      const Moduli moduli = body.moduli(cell->center());
       const double mu     = dim == 1 ? 0.5 * moduli.young() : moduli.shear,
                    lambda = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane);
       sums.add(cell, of_cell.indices, of_cell.stiffness, dim * lambda + dim * (dim + 1) * mu);
@@ -251,10 +251,10 @@ namespace PeriDeal
     if (bonds)
       for_each_whole([&](const Cell &cell, Data &of_cell) {
         if (bonds->leave_remainder(cell, of_cell.stiffness))
-          lowest = std::min(lowest,
-                            lowest_eigenvalue(of_cell.stiffness) /
-                              (body.material.moduli(cell->center()).shear *
-                               std::pow(cell->measure(), 1. - 2. / dim)));
+          lowest = std::min(
+            lowest,
+            lowest_eigenvalue(of_cell.stiffness) /
+              (body.moduli(cell->center()).shear * std::pow(cell->measure(), 1. - 2. / dim)));
       });
     return lowest;
   }

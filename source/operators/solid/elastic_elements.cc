@@ -459,7 +459,7 @@ namespace PeriDeal
     this->set_contact_strains();
     if (cells.stresses)
       cells.stresses->take_temperatures(body, this->temperature_change());
-    assemble(true);
+    assemble(!body.moduli_change());
     this->keep_constant_loads();
   }
 

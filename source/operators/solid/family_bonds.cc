@@ -32,7 +32,7 @@ namespace PeriDeal
   template <int dim>
   StateLaw FamilyBonds<dim>::law_of(const unsigned int node) const
   {
-    return state_law(body.material.moduli(this->families.nodes().position(node)),
+    return state_law(body.moduli(this->families.nodes().position(node)),
                      dim,
                      body.elasticity.plane);
   }

@@ -6,7 +6,6 @@
 #include <perideal/base/instantiate.h>
 #include <perideal/base/interleaved.h>
 
-#include <map>
 #include <unordered_map>
 
 namespace PeriDeal
@@ -36,23 +35,28 @@ namespace PeriDeal
           slots[i]        = static_cast<std::uint32_t>(layout.slot(site));
           nodes[slots[i]] = i;
         }
-    const auto                        &members = families.weights().members();
-    std::map<int, std::vector<Column>> columns;
+    const auto &members = families.weights().members();
     for (std::size_t k = 0; k < members.size(); ++k)
+      family.numbers.push_back(k);
+    std::stable_sort(family.numbers.begin(),
+                     family.numbers.end(),
+                     [&](const std::size_t k, const std::size_t l) {
+                       return members[k].offset[0] > members[l].offset[0];
+                     });
+    for (const std::size_t k : family.numbers)
       {
         const auto    &offset = members[k].offset;
-        std::ptrdiff_t rows   = dim > 1 ? offset[dim > 1] : 0;
+        std::ptrdiff_t step   = offset[0];
+        if (dim > 1)
+          step += offset[dim > 1] * static_cast<std::ptrdiff_t>(row.length);
         if (dim > 2)
-          rows += offset[dim - 1] * (grid.plane_stride / grid.row_stride);
-        const std::ptrdiff_t step = offset[0] + rows * static_cast<std::ptrdiff_t>(row.length);
+          step += offset[dim - 1] * static_cast<std::ptrdiff_t>(grid.plane_stride);
         family.offsets.push_back(step);
         family.weights.push_back(members[k].weight);
         for (unsigned int d = 0; d < dim; ++d)
           family.vectors.push_back(offset[d] * lattice.spacing[d]);
-        columns[offset[0]].push_back({rows, members.size() - 1 - k, members[k].weight});
         row.margin = std::max(row.margin, static_cast<std::size_t>(std::abs(step)) + 2 * width);
       }
-    family.columns.assign(columns.begin(), columns.end());
   }
 
 
@@ -138,86 +142,46 @@ namespace PeriDeal
 
 
   template <int dim>
-  void LatticeHistories<dim>::add_far_of(const StencilKernel::Run &run,
-                                         const Of                  what,
-                                         double *const            *to) const
-  {
-    const auto           length = static_cast<std::ptrdiff_t>(row.length);
-    const std::ptrdiff_t own    = run.y + run.z * (layout.grid(nullptr).plane_stride / length);
-    const auto           before = static_cast<std::ptrdiff_t>(row.before);
-    std::vector<FarBond> bonds, next; // what comes next is asked for before what has come is added
-    double              *at[3] = {}, *at_next[3] = {};
-    const auto           add = [&]() {
-      if (!bonds.empty())
-        add_far<dim>(bonds.data(), bonds.size(), at);
-      bonds.swap(next);
-      std::swap(at, at_next);
-    };
-    for (const auto &[steps, columns] : family.columns)
-      for (std::ptrdiff_t place = (run.x + before + steps) / width;
-           place <= (run.x + before + steps + static_cast<std::ptrdiff_t>(run.n) - 1) / width;
-           ++place)
-        {
-          next.clear();
-          for (const Column &column : columns)
-            {
-              const std::uint32_t k = number_of[(own + column.rows) * row.n + place];
-              if (k == none)
-                continue;
-              const Chunk &chunk = chunks[k];
-              if (!(what == Of::plastic ? chunk.remembers : chunk.is_kept))
-                continue;
-              const double *const remembered =
-                (what == Of::plastic ? chunk.plastic : chunk.elastic).data() +
-                dim * width * column.opposite;
-              for (unsigned int a = 0; a < dim; ++a)
-                __builtin_prefetch(remembered + a * width);
-              next.push_back({remembered, chunk.factors, column.weight});
-            }
-          for (unsigned int a = 0; a < dim; ++a)
-            at_next[a] =
-              to[a] + (place * static_cast<std::ptrdiff_t>(width) - before - steps - run.x);
-          add();
-        }
-    next.clear();
-    add();
-  }
-
-
-  template <int dim>
   void LatticeHistories<dim>::subtract_far(double                                          *y,
                                            const Of                                         what,
                                            const std::function<double(const unsigned int)> &factor)
   {
-    bool any = false;
-    for (Chunk &chunk : chunks)
-      if (what == Of::plastic ? chunk.remembers : chunk.is_kept)
-        {
-          any = true;
-          flow(chunk);
-          for (unsigned int k = 0; k < width; ++k)
-            {
-              const unsigned int node = node_at(chunk, k);
-              chunk.factors[k] = node == none ? 0. : families.nodes().volume(node) * factor(node);
-            }
-        }
-    if (!any)
+    if (std::none_of(chunks.begin(), chunks.end(), [=](const Chunk &chunk) {
+          return chunk.has(what);
+        }))
       return;
-    std::vector<double>     sums(dim * (row.length + 2 * width));
-    std::array<double *, 3> to{};
+    double *to[dim];
     for (unsigned int a = 0; a < dim; ++a)
-      to[a] = sums.data() + a * (row.length + 2 * width) + width;
-    for (std::size_t r = 0; r < layout.runs.size(); ++r)
       {
-        std::fill(sums.begin(), sums.end(), 0.);
-        add_far_of(layout.runs[r], what, to.data());
-        for (std::size_t k = 0; k < layout.runs[r].n; ++k)
-          {
-            const std::size_t node = layout.first_nodes[r] + k;
-            for (unsigned int a = 0; a < dim; ++a)
-              y[dim * node + a] -= families.nodes().volume(node) * to[a][k];
-          }
+        far[a].assign(layout.n_slots() + 2 * row.margin, 0.);
+        to[a] = far[a].data() + row.margin;
       }
+    double factors[width];
+    for (const std::uint32_t number : number_of) // sums do not depend on who owns which nodes
+      {
+        if (number == none || !chunks[number].has(what))
+          continue;
+        Chunk &chunk = chunks[number];
+        flow(chunk);
+        for (unsigned int k = 0; k < width; ++k)
+          {
+            const unsigned int node = node_at(chunk, k);
+            factors[k] = node == none ? 0. : families.nodes().volume(node) * factor(node);
+          }
+        double *to_chunk[dim];
+        for (unsigned int a = 0; a < dim; ++a)
+          to_chunk[a] = to[a] + chunk.slot;
+        add_to_far_ends<dim>(bonds_of(chunk, grids, nullptr),
+                             factors,
+                             (what == Of::plastic ? chunk.plastic : chunk.elastic).data(),
+                             to_chunk);
+      }
+    for (std::size_t r = 0; r < layout.runs.size(); ++r)
+      for (std::size_t node = layout.first_nodes[r];
+           node < layout.first_nodes[r] + layout.runs[r].n;
+           ++node)
+        for (unsigned int a = 0; a < dim; ++a)
+          y[dim * node + a] -= families.nodes().volume(node) * to[a][slots[node]];
   }
 
 
@@ -245,7 +209,7 @@ namespace PeriDeal
             for (std::size_t bond = 0; any && bond < n; ++bond)
               if (grids[dim][row.margin + chunk.slot + k + family.offsets[bond]] > 0.)
                 {
-                  pairs.keys.push_back({keys[node], bond});
+                  pairs.keys.push_back({keys[node], family.numbers[bond]});
                   for (unsigned int a = 0; a < dim; ++a)
                     pairs.values.push_back(of_bond(bond, a));
                 }
@@ -256,6 +220,9 @@ namespace PeriDeal
       return;
     chunks.clear();
     std::fill(number_of.begin(), number_of.end(), none);
+    std::vector<std::size_t> place_of(n); // of members of the family
+    for (std::size_t bond = 0; bond < n; ++bond)
+      place_of[family.numbers[bond]] = bond;
     std::unordered_map<std::uint64_t, unsigned int> node_of;
     for (unsigned int node = 0; node < keys.size(); ++node)
       node_of[keys[node]] = node;
@@ -267,8 +234,9 @@ namespace PeriDeal
         chunk.wanted    = 0;
         chunk.remembers = true;
         wanted.clear();
+        const std::size_t first = dim * place_of[pairs.keys[k][1]];
         for (unsigned int a = 0; a < dim; ++a)
-          chunk.plastic[(dim * pairs.keys[k][1] + a) * width + (slots[node] - chunk.slot)] =
+          chunk.plastic[(first + a) * width + (slots[node] - chunk.slot)] =
             pairs.values[dim * k + a];
       }
     exchange_ghosts();
@@ -315,7 +283,7 @@ namespace PeriDeal
     for (const Chunk &chunk : chunks)
       n += chunk.plastic.size() + chunk.elastic.size();
     for (unsigned int a = 0; a <= dim; ++a)
-      n += grids[a].capacity() + before[a].capacity();
+      n += grids[a].capacity() + before[a].capacity() + far[a].capacity();
     return n * sizeof(double) + chunks.size() * sizeof(Chunk) +
            (nodes.capacity() + slots.capacity() + number_of.capacity() + wanted.capacity()) *
              sizeof(std::uint32_t);

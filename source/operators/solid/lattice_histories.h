@@ -86,19 +86,16 @@ namespace PeriDeal
       std::ptrdiff_t                slot;       // of the first site, which may lie before its row
       std::ptrdiff_t                begin, end; // of the row
       dealii::AlignedVector<double> plastic, elastic;
-      double                        factors[width] = {}, lost[width];
+      double                        lost[width];
       double                        slopes[dim * dim * width]; // before, as what is lost
       bool                          is_pending = false;        // it has not flowed yet
       unsigned int                  wanted     = 0;            // bits
       bool                          remembers = false, is_kept = false;
-    };
 
-    /** A bond of some steps along the row: how many rows on, its opposite in the family, w. */
-    struct Column
-    {
-      std::ptrdiff_t rows;
-      std::size_t    opposite;
-      double         weight;
+      bool has(const Of what) const
+      {
+        return what == Of::plastic ? remembers : is_kept;
+      }
     };
 
     /** The local node at a place of a chunk, or none. */
@@ -126,7 +123,6 @@ namespace PeriDeal
     void for_each_owned(const Chunk &chunk, const Visit &visit) const;
 
     void make_grids(Grids &of);
-    void add_far_of(const StencilKernel::Run &run, const Of what, double *const *to) const;
     void exchange_ghosts();
 
     const Families<dim>      &families;
@@ -139,11 +135,13 @@ namespace PeriDeal
       std::size_t margin = 0; // of numbers before and behind the grids
     } row;
 
+    // Backwards along rows: so whatever the chunks, far ends have their sums in the order of nodes,
+    // and what is written is not read again by the next bonds.
     struct
     {
-      std::vector<std::ptrdiff_t>                      offsets;
-      std::vector<double>                              vectors, weights; // xi, w
-      std::vector<std::pair<int, std::vector<Column>>> columns;          // by steps
+      std::vector<std::size_t>    numbers; // among the members
+      std::vector<std::ptrdiff_t> offsets;
+      std::vector<double>         vectors, weights; // xi, w
     } family;
 
     std::vector<std::uint32_t> nodes, slots; // by slot; of local nodes
@@ -152,6 +150,7 @@ namespace PeriDeal
     std::vector<std::uint32_t> wanted;
 
     Grids grids, before; // padded: u, V; u where z_p has still to flow
+    Grids far;           // padded: what bonds remember, at their far ends
   };
 
 

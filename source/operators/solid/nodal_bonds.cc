@@ -22,7 +22,7 @@ namespace PeriDeal
     const Nodes<dim> &nodes = this->families.nodes();
     for (unsigned int i = 0; i < nodes.n_owned(); ++i)
       {
-        const Moduli moduli = body.material.moduli(nodes.position(i));
+        const Moduli moduli = body.moduli(nodes.position(i));
         Node         node;
         node.lambda = dim == 1 ? 0. : lambda_of(moduli, dim, body.elasticity.plane);
         node.shear  = moduli.shear;

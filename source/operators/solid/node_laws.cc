@@ -45,15 +45,24 @@ namespace PeriDeal
     , volumetric(!body.elasticity.is_bond_based() && dim > 1)
     , counts_cut(body.material.law.softens())
     , nodes(nodes)
+    , body(body)
     , horizon(body.horizon())
+  {
+    find_laws();
+  }
+
+
+  template <int dim>
+  void NodeLaws<dim>::find_laws()
   {
     const PlaneState plane   = body.elasticity.plane;
     double           largest = 0., smallest = 1e300;
+    laws.clear();
     for (unsigned int i = 0; i < nodes.n_local(); ++i)
       {
-        const Moduli moduli = body.material.moduli(nodes.position(i));
-        laws.push_back(body.elasticity.is_bond_based() ? bond_law(moduli, dim, plane) :
-                                                         state_law(moduli, dim, plane));
+        const Moduli of_node = moduli(i);
+        laws.push_back(body.elasticity.is_bond_based() ? bond_law(of_node, dim, plane) :
+                                                         state_law(of_node, dim, plane));
         largest  = std::max(largest, laws[i].extension);
         smallest = std::min(smallest, laws[i].extension);
       }
@@ -67,6 +76,16 @@ namespace PeriDeal
     const MPI_Comm all = nodes.communicator();
     several_phases     = Utilities::MPI::max(largest, all) >
                      (1. + 1e-12) * Utilities::MPI::min(smallest, all);
+  }
+
+
+  template <int dim>
+  void NodeLaws<dim>::take_temperatures(const Vector &of_nodes)
+  {
+    changes.resize(nodes.n_local());
+    for (unsigned int i = 0; i < nodes.n_local(); ++i)
+      changes[i] = of_nodes.local_element(i);
+    find_laws();
   }
 
 

@@ -50,19 +50,23 @@ namespace PeriDeal
 
 
   template <int dim>
-  void NodeShapes<dim>::add(const Stiffness &stiffness, const bool is_known)
+  void NodeShapes<dim>::set_stiffness(const unsigned int i,
+                                      const Stiffness   &stiffness,
+                                      const bool         is_known)
   {
-    Shape shape;
+    if (i == 0)
+      stiffnesses.clear();
+    if (i == list.size())
+      list.emplace_back();
+    Shape &shape = list[i];
     if (stiffnesses.empty() || !(stiffnesses.back() == stiffness))
       {
         stiffnesses.push_back(stiffness);
-        if (is_known)
-          shape.shear = soft_shear(stiffness);
+        shape.shear = is_known ? soft_shear(stiffness) : 0.;
       }
     else
-      shape.shear = list.back().shear;
+      shape.shear = list[i - 1].shear;
     shape.stiffness = static_cast<unsigned int>(stiffnesses.size() - 1);
-    list.push_back(shape);
   }
 
 

@@ -7,6 +7,7 @@
 #include <perideal/base/worst_trip.h>
 #include <perideal/laws/linear_stress.h>
 #include <perideal/laws/nodal_stiffness.h>
+#include <perideal/operators/coupling/nodal_family.h>
 #include <perideal/operators/solid/node_stresses.h>
 #include <perideal/operators/solid/thermal_strains.h>
 
@@ -80,11 +81,21 @@ namespace PeriDeal
         const double      change = temperature_change_of(body, p, changes, i);
         // The linear law has what is strained out of the plane within it, as all its sums do.
         warm.strains.push_back(kind.is_linear ? thermal_strain(body, p, change) :
-                                                body.material.thermal_expansion.value(p) * change);
+                                                body.free_expansion(p, change));
         warm.temperatures.push_back(temperature_of(body, change));
       }
     if (law.depends_on_temperature)
       find_parameters();
+  }
+
+
+  template <int dim>
+  SymmetricTensor<4, dim> NodeStresses<dim>::elastic(const unsigned int i) const
+  {
+    const Point<dim> &p = nodes.position(i);
+    const double      T = warm.temperatures.empty() ? temperature_at_start(body, p) :
+                                                      warm.temperatures[i];
+    return in_body<dim>(linear_stiffness(body, p, T));
   }
 
 

@@ -296,6 +296,27 @@ namespace PeriDeal
 
 
   template <int dim>
+  void SolidBonds<dim>::take_temperatures(const Vector &changes)
+  {
+    std::vector<double> before(families.nodes().n_local());
+    for (unsigned int i = 0; i < before.size(); ++i)
+      before[i] = laws.stiffness(i);
+    laws.take_temperatures(changes);
+    const auto scale = [&](BondRows<dim> &bonds) {
+      for (std::size_t row = 0; !bonds.is_packed() && row < bonds.nodes.size(); ++row)
+        for (std::size_t k = bonds.starts[row]; k < bonds.starts[row + 1]; ++k)
+          {
+            const unsigned int i = bonds.nodes[row], j = bonds.neighbors[k];
+            bonds.springs[k] *=
+              rows.stiffnesses(i, j) / (before[i] + (ends.is_fictitious(j) ? 0. : before[j]));
+          }
+    };
+    scale(rows.body);
+    scale(rows.beyond);
+  }
+
+
+  template <int dim>
   void SolidBonds<dim>::apply_change(const ChangeSet<dim> &change, const bool marked)
   {
     const Neighbors<dim> &neighbors = families.neighbors();

@@ -109,8 +109,7 @@ namespace PeriDeal
         }
       else
         for (unsigned int i = 0; i < nodes.n_local(); ++i)
-          extension[i] =
-            bond_law(body.material.moduli(nodes.position(i)), dim, body.elasticity.plane).extension;
+          extension[i] = bond_law(bonds.laws.moduli(i), dim, body.elasticity.plane).extension;
       return extension;
     }
 

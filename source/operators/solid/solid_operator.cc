@@ -52,6 +52,7 @@ namespace PeriDeal
         expansion.is_constant() && expansion.value(Point<dim>()) == 0. &&
         !(body.material.breaks() && limit_of_bonds(body.material).depends_on_temperature()) &&
         !body.material.law.yield_depends_on_temperature() &&
+        !body.material.given.depend_on_temperature() &&
         body.material.law.kind != SolidLaw::user, // which is told the temperature
       "Temperature change",
       "has no effect: 'Thermal expansion' in section 'Material' is 0.");
@@ -203,13 +204,13 @@ namespace PeriDeal
           keep_surrogate();
         take_loaded(time);
       }
+    ElasticOperator::exchange(archive, keys); // contact is that of its temperature
     if (archive.loads())
       contact->renew();
     contact->exchange(archive, keys);
     if (archive.loads())
       latest.contact_is_loaded = latest.is_made;
     conditions->exchange(archive, keys);
-    ElasticOperator::exchange(archive, keys);
   }
 
 

@@ -175,7 +175,7 @@ namespace PeriDeal
           continue;
         double      &zz     = list[i][2][2];
         const double sum    = trace(tensors.stress[i]);
-        const Moduli moduli = material.moduli(bonds.families.nodes().position(i));
+        const Moduli moduli = bonds.laws.moduli(i);
         if (bonds.yielding())
           zz = bonds.yielding()->out_of_plane(i);
         else if (knows_out_of_plane)

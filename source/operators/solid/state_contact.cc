@@ -64,7 +64,7 @@ namespace PeriDeal
                                     solid.laws.weighted.local_element(node) *
                                       solid.families.nodes().volume(node) / all);
       // Bonds that dilatations take from would be stiffer across a face than the body is.
-      const Moduli moduli = body.material.moduli(solid.families.nodes().position(node));
+      const Moduli moduli = solid.laws.moduli(node);
       const double stiff  = lambda_of(moduli, dim, body.elasticity.plane) + 2. * moduli.shear,
                    takes  = solid.laws.volumetric && dim > 1 ?
                               std::min(1., stiff / (3. * moduli.shear)) :

@@ -96,9 +96,16 @@ namespace PeriDeal
   void StateOperator<dim>::set_temperature_change(const Vector &nodal)
   {
     this->keep_temperature_change(nodal);
+    if (body.moduli_change())
+      solid.take_temperatures(this->temperature_change());
     breakage.take_temperature_change(this->temperature_change());
     thermal_loads = 0.;
     find_thermal_strains();
+    if (!body.moduli_change())
+      return;
+    find_stiffness_diagonal(solid, stiffness_diagonal);
+    conditions->mask(stiffness_diagonal, 1.);
+    contact->renew();
   }
 
 

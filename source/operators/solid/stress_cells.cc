@@ -330,7 +330,7 @@ namespace PeriDeal
                 for (unsigned int a = 0; a < at.nodes.size(); ++a)
                   change += changes(at.nodes[a]) * at.strains.values().shape_value(a, q);
               const double T = temperature_of(body, change);
-              strains[q]     = body.material.thermal_expansion.value(p) * change;
+              strains[q]     = body.free_expansion(p, change);
               if (message.empty() && is_known)
                 message = yield_stress_fault(body.material, p, T);
               if (warms)

@@ -29,13 +29,13 @@ namespace PeriDeal
       const Material &material = body.material;
       auto law = std::make_unique<const J2Plasticity>(stress_state_of(dim, body.elasticity.plane));
       const auto parameters = [&material, &law = *law](const Point<dim> &p, const double T) {
-        return law.parameters(material.moduli(p),
+        return law.parameters(material.moduli(p, T),
                               yield_stress_of(material, p, T),
                               material.law.hardening.value(p, T));
       };
       return {std::move(law),
               parameters,
-              material.law.yield_depends_on_temperature(),
+              material.law.yield_depends_on_temperature() || material.given.depend_on_temperature(),
               [&body](const Point<dim> &p) { return temperature_at_start(body, p); }};
     }
 
@@ -45,7 +45,7 @@ namespace PeriDeal
     {
       return {std::make_unique<const NeoHooke>(stress_state_of(dim, body.elasticity.plane)),
               [&material = body.material](const Point<dim> &p, const double) {
-                const Moduli moduli = material.moduli(p);
+                const Moduli moduli = material.moduli(p); // which know no temperature
                 if (!std::isfinite(moduli.bulk))
                   report_formula_error(
                     "Entry " + material.where("Poisson ratio") + ", at " + place_text(p) +
@@ -137,9 +137,12 @@ namespace PeriDeal
   template <int dim>
   PlacedStressLaw<dim> linear_stress_law(const BodyParameters<dim> &body)
   {
-    return {std::make_unique<const LinearStress>(), [&body](const Point<dim> &p, const double) {
-              return LinearStress::parameters(linear_stiffness(body, p));
-            }};
+    return {std::make_unique<const LinearStress>(),
+            [&body](const Point<dim> &p, const double T) {
+              return LinearStress::parameters(linear_stiffness(body, p, T));
+            },
+            body.material.given.depend_on_temperature(),
+            [&body](const Point<dim> &p) { return temperature_at_start(body, p); }};
   }
 
 

@@ -73,7 +73,7 @@ namespace PeriDeal
         const bool   is_known = !of_scene.elasticity.computes_temperature || !temperatures.empty();
         if (message.empty() && is_known)
           message = yield_stress_fault(material, p, T);
-        materials.emplace_back(material.moduli(p),
+        materials.emplace_back(laws.moduli(i),
                                dim,
                                of_scene.elasticity.plane,
                                yield_stress_of(material, p, T),
@@ -97,10 +97,11 @@ namespace PeriDeal
       {
         const Point<dim> &p      = nodes.position(i);
         const double      change = temperature_change_of(of_scene, p, changes, i);
-        expansions.push_back(of_scene.material.thermal_expansion.value(p) * change);
+        expansions.push_back(of_scene.free_expansion(p, change));
         temperatures.push_back(temperature_of(of_scene, change));
       }
-    if (of_scene.material.law.yield_depends_on_temperature())
+    if (of_scene.material.law.yield_depends_on_temperature() ||
+        of_scene.material.given.depend_on_temperature())
       find_materials(temperatures);
   }
 

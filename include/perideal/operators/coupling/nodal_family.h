@@ -13,9 +13,11 @@
 
 namespace PeriDeal
 {
-  /** The linear law of the scene at a place, in plane stress what it is in the plane. */
+  /** The linear law of the scene at a place and its temperature, in plane stress in the plane. */
   template <int dim>
-  StressLaw::Tangent linear_stiffness(const BodyParameters<dim> &body, const dealii::Point<dim> &p);
+  StressLaw::Tangent linear_stiffness(const BodyParameters<dim> &body,
+                                      const dealii::Point<dim>  &p,
+                                      const double               temperature);
 
 
   /** Families have a law of stresses that is not linear: no matrix and no list has them. */

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <perideal/scene/formula_names.h>
 #include <perideal/scene/material.h>
 
 #include <algorithm>
@@ -29,8 +30,9 @@ namespace PeriDeal
     };
     const double middle = 0.5 * (from + to), whole = rule(from, to), first = rule(from, middle),
                  second = rule(middle, to);
+    // Where f is no number, so is its integral.
     if (depth == 0 ||
-        std::abs(first + second - whole) <= part * (std::abs(first) + std::abs(second)))
+        !(std::abs(first + second - whole) > part * (std::abs(first) + std::abs(second))))
       return first + second;
     return integral_over_jumps(f, from, middle, part, depth - 1) +
            integral_over_jumps(f, middle, to, part, depth - 1);
@@ -85,12 +87,16 @@ namespace PeriDeal
   }
 
 
-  /** Heat per volume at a temperature: the integral of rho c over the temperature from 0 on. */
+  /**
+   * Heat per volume at a temperature: the integral of rho c over the temperature from 0 on, where
+   * tables may have no numbers, and these do not matter.
+   */
   template <int dim>
   double heat_content(const Material           &material,
                       const dealii::Point<dim> &p,
                       const double              temperature)
   {
+    const HeldTableEnds held;
     return heat_between_temperatures(material, p, 0., temperature);
   }
 } // namespace PeriDeal

@@ -66,8 +66,8 @@ namespace PeriDeal
     }
 
     /**
-     * Let the body be warmer at its nodes by so much than when it is unstressed; K stays as it is.
-     * A new equilibrium is to be found. Collective.
+     * Let the body be warmer at its nodes by so much than when it is unstressed. K stays as it is
+     * unless moduli follow the temperature. A new equilibrium is to be found. Collective.
      */
     virtual void set_temperature_change(const Vector &nodal) = 0;
 

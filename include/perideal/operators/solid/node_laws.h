@@ -24,6 +24,19 @@ namespace PeriDeal
     /** @param nodes with their halo. q is to be filled in. Collective. */
     NodeLaws(const Nodes<dim> &nodes, const BodyParameters<dim> &body);
 
+    /**
+     * Temperatures have become those of nodes, ghosts up to date: so have moduli that depend on
+     * them. Springs are left as they are. Collective.
+     */
+    void take_temperatures(const Vector &changes);
+
+    /** Of an owned node or a ghost, at the temperature that was taken last. */
+    Moduli moduli(const unsigned int i) const
+    {
+      return changes.empty() ? body.moduli(nodes.position(i)) :
+                               body.moduli(nodes.position(i), changes[i]);
+    }
+
     const StateLaw &operator[](const unsigned int node) const
     {
       return laws[laws.size() > 1 ? node : 0];
@@ -79,7 +92,7 @@ namespace PeriDeal
 
     std::size_t memory_consumption() const
     {
-      return laws.capacity() * sizeof(StateLaw);
+      return laws.capacity() * sizeof(StateLaw) + changes.capacity() * sizeof(double);
     }
 
     Vector         weighted;   // q_i; ghosts up to date
@@ -89,8 +102,12 @@ namespace PeriDeal
     bool           several_phases = false; // nodes differ in b
 
   private:
-    const Nodes<dim>     &nodes;
-    const double          horizon;
-    std::vector<StateLaw> laws; // owned and ghosts; a single one: all have it
+    void find_laws();
+
+    const Nodes<dim>          &nodes;
+    const BodyParameters<dim> &body;
+    const double               horizon;
+    std::vector<StateLaw>      laws; // owned and ghosts; a single one: all have it
+    std::vector<double> changes; // of temperatures that moduli follow; empty: those of the scene
   };
 } // namespace PeriDeal

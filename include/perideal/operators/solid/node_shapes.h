@@ -82,8 +82,11 @@ namespace PeriDeal
                const BondTable<dim> &bonds,
                const NodeLaws<dim>  &laws);
 
-    /** Of the next node. @param is_known whether there is a shear modulus in it */
-    void add(const Stiffness &stiffness, const bool is_known);
+    /**
+     * Of node i, one after the other from the first on, again where moduli change; then renew() of
+     * all is due. @param is_known whether there is a shear modulus in it
+     */
+    void set_stiffness(const unsigned int i, const Stiffness &stiffness, const bool is_known);
 
     /** Bonds of these owned nodes bear nothing any more, or q has changed. */
     void renew(const std::vector<unsigned int> &nodes);

@@ -31,6 +31,15 @@ namespace PeriDeal
     /** As FamilyForces::take_temperatures(). Collective. */
     void take_temperatures(const Vector &changes);
 
+    /** Moduli follow a temperature that is computed. */
+    bool moduli_change() const
+    {
+      return body.moduli_change();
+    }
+
+    /** The stiffness of the linear law at the temperature of now. */
+    dealii::SymmetricTensor<4, dim> elastic(const unsigned int i) const;
+
     bool is_linear() const
     {
       return kind.is_linear;

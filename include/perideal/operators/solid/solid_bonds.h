@@ -35,6 +35,12 @@ namespace PeriDeal
      */
     void apply_change(const ChangeSet<dim> &change, const bool marked);
 
+    /**
+     * Temperatures have become those of nodes, ghosts up to date; moduli that depend on them
+     * follow. Not of a lattice. Collective.
+     */
+    void take_temperatures(const Vector &changes);
+
     Families<dim>       families;
     NodeLaws<dim>       laws;
     ThermalStrains      thermal;

@@ -21,8 +21,8 @@ namespace PeriDeal
                         const dealii::Point<dim>  &p,
                         const double               temperature_change)
   {
-    return thermal_strain_factor(body.material.moduli(p), dim, body.elasticity.plane) *
-           body.material.thermal_expansion.value(p) * temperature_change;
+    return thermal_strain_factor(body.moduli(p, temperature_change), dim, body.elasticity.plane) *
+           body.free_expansion(p, temperature_change);
   }
 
 
