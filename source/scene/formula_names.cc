@@ -268,8 +268,11 @@ namespace PeriDeal
       if (rank == 0)
         {
           std::error_code error;
-          if (!fs::exists(name, error) && fs::exists(beside, error))
-            entry.file = beside.string();
+          // The last is where results have a copy, for the scene that lies there.
+          const fs::path copy = fs::path(folder) / "tables" / (entry.name + ".csv");
+          for (const fs::path &other : {beside, copy})
+            if (!fs::exists(entry.file, error) && fs::exists(other, error))
+              entry.file = other.string();
           text = read_file(entry.file, most_bytes_of_data, message);
           if (!message.empty())
             message = "Entry " + where + ": the table '" + entry.name + "': the file '" + name +
