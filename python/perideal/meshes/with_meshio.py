@@ -4,14 +4,16 @@
 
 import contextlib
 import io
+import re
 from pathlib import Path
 
 import numpy as np
 
 from .mesh import Block, Fault, HEXAHEDRON, LINE, Mesh, POINT, PYRAMID, QUADRILATERAL, TETRAHEDRON, TRIANGLE, WEDGE
 
-_SHAPES = (("vertex", POINT), ("line", LINE), ("triangle", TRIANGLE), ("quad", QUADRILATERAL), ("tetra", TETRAHEDRON), ("pyramid", PYRAMID), ("wedge", WEDGE),
-           ("hexahedron", HEXAHEDRON))
+_KIND = re.compile(r"([a-z]+)\d*")
+_SHAPES = dict((("vertex", POINT), ("line", LINE), ("triangle", TRIANGLE), ("quad", QUADRILATERAL), ("tetra", TETRAHEDRON), ("pyramid", PYRAMID), ("wedge", WEDGE),
+                ("hexahedron", HEXAHEDRON)))
 _WORDS = ("physical", "region", "material", "group", "block", "phase", "tag", "label", "marker", "ref", "domain", "zone", "part", "entityid", "id")
 _MOST_GROUPS = 1000
 FORMATS = "Gmsh (.msh), Abaqus and CalculiX (.inp), Exodus (.e, .exo, .g), UNV (.unv) and, with meshio, VTK (.vtk, .vtu), XDMF (.xdmf) and others"
@@ -44,7 +46,8 @@ def _taken(given) -> Mesh:
     mesh.points[:, :points.shape[1]] = points[:, :3]
     ids, kept, first = _group_numbers(given), {}, 0
     for k, block in enumerate(given.cells):
-        shape = next((one for begin, one in _SHAPES if block.type.startswith(begin)), None)
+        match = _KIND.fullmatch(block.type)
+        shape = _SHAPES.get(match[1]) if match else None
         nodes = np.asarray(block.data)
         if shape is None or not len(nodes) or nodes.ndim != 2:
             if shape is None:
