@@ -115,7 +115,7 @@ class _Reader:
         if keyword in _JOINTS:
             self.joints.add(keyword)
         elif keyword.endswith("SECTION") and keyword != "SURFACESECTION" and options.get("ELSET"):
-            self.scope.sections.append((options["ELSET"].upper(), options.get("MATERIAL", "")))
+            self.scope.sections.append((options["ELSET"], options.get("MATERIAL", "")))
         elif take := {"NODE": self._nodes, "ELEMENT": self._elements, "NSET": self._set, "ELSET": self._set, "SURFACE": self._surface,
                       "PART": self._part, "INSTANCE": self._instance, "ENDPART": self._end, "ENDINSTANCE": self._end}.get(keyword):
             try:

@@ -123,8 +123,8 @@ class _Joined:
 
     def take_sections(self) -> None:
         """Sets that sections name are regions; those that no person named have the name of their material."""
-        for name, material in self.scope.sections:
-            rows = self._rows("element", name, "a section")
+        for given, material in self.scope.sections:
+            rows, name = self._rows("element", given, "a section"), given.upper()
             title = self._title(name)
             if ("element", name) in self.scope.internal and len(rows):
                 title = material if material and (material not in self.mesh.element_sets or material in self.mesh.regions) else title

@@ -78,6 +78,13 @@ class Groups:
             self._note_loss(name, kept, len(sets[name]), "elements")
             if kept == 0:
                 del self.names[(self.dimension, name)]
+        flat = {}
+        for block in mesh.blocks:
+            if 0 < block.shape.dimension < self.dimension:
+                flat[block.shape.name] = flat.get(block.shape.name, 0) + len(block.numbers)
+        if flat:
+            text = " and ".join(f"{n} {name}s" for name, n in sorted(flat.items()))
+            mesh.notes.append(f"{text} are no cells of a mesh of dimension {self.dimension}: they are sides where sets name them.")
         for first, block in self._blocks(self.dimension):
             self.cells[id(block)] = group[first:first + len(block.numbers)]
 
