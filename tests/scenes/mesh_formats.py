@@ -359,6 +359,9 @@ def sets():
                                            "*Solid Section, elset=_PickedSet2, material=Steel\n,\n*Solid Section, elset=_PickedSet3, material=Iron\n,\n"))[0]
     check_group(found, (2, "Steel"), cells(1, 2), "a section of an internal set")
     check_group(found, (2, "Iron"), cells(3, 4), "a section of an internal set")
+    own = cae_text(two, sections).replace("*End Instance\n", "").replace("*Part, name=Part-1", "*Instance, name=Part-1-1, part=Part-1")
+    own = own.replace("*End Part\n*Assembly, name=Assembly\n*Instance, name=Part-1-1, part=Part-1\n", "*End Instance\n")
+    check_group(taken("own.inp", own)[0], (2, "Iron"), cells(4), "an instance with nodes of its own")
     # One name within the part and in the assembly.
     found = taken("twice.inp", cae_text("*Elset, elset=Set-1\n 1, 2\n", "", "*Nset, nset=Set-1, instance=Part-1-1\n 5, 10\n*Elset, elset=Set-1, instance=Part-1-1\n 4,\n"))[0]
     check_group(found, (2, "Part-1-1.Set-1"), cells(1, 2), "a set of the part")
@@ -425,7 +428,7 @@ def dialects():
     for side, edge in (("bottom", (1, 2)), ("right", (5, 10)), ("left", (1, 6))):
         check_group(found, (1, side), [edge], "edges of shells")
     for data, words in ((STRIP + "*Ngen\n1, 5, 1\n", ["*NGEN", "not read"]), (STRIP + "*Elgen\n1, 5\n", ["*ELGEN"]), ("*System\n1, 0, 0\n" + STRIP, ["*SYSTEM"]),
-                        (cae_text().replace("part=Part-1\n", "part=Part-2\n"), ["'Part-2'"]), (STRIP + "*Include, input=none.inc\n", ["none.inc"])):
+                        (cae_text().replace("part=Part-1\n", "part=Part-2\n"), ["'PART-2'"]), (STRIP + "*Include, input=none.inc\n", ["none.inc"])):
         fault = fault_of("maker.inp", data)
         check(all(word in fault for word in words), f"{data[-40:]!r}: '{fault}'")
     # UNV with coordinates of the dataset 15, groups of pairs, units, edges of second order, members that are not there.

@@ -67,6 +67,9 @@ class _Reader:
 
     def _note(self) -> None:
         notes = self.mesh.notes
+        for name, scope in self.instances.items():  # Abaqus/CAE also writes instances with nodes of their own
+            if scope.of_part not in self.parts and not scope.nodes:
+                raise Fault(f"has an instance '{self.spelled[name]}' of a part '{scope.of_part}', which is not in the file")
         for kind, n in self.passed_over.items():
             notes.append(f"{n} elements of type {kind} are left out, which have no shape.")
         if self.axisymmetric:
@@ -133,9 +136,7 @@ class _Reader:
 
     def _instance(self, keyword, options, data) -> None:
         part = options.get("PART", "").upper()
-        if "LIBRARY" in options or (part and part not in self.parts):
-            raise Fault(f"has an instance '{options.get('NAME', '')}' of a part '{options.get('PART', '')}', which is not in the file (line {self.began})")
-        self.scope = self.parts[part].copy() if part else Scope()
+        self.scope = self.parts[part].copy() if part in self.parts else Scope()
         self.scope.of_part = part
         self.scope.placing = [[_real(word) for word in _fields(line)] for line in data]
         self.instances[self._named(options.get("NAME", ""))] = self.scope
