@@ -2,7 +2,7 @@
 # Copyright (C) 2026 the PeriDeal authors
 """Meshes as people bring them: a bar of tetrahedra in all formats, bars of all kinds of cells, damaged files.
 
-    mesh_formats.py formats | bars | damaged | sets | dialects | exodus | unfit
+    mesh_formats.py formats | bars | damaged | sets | dialects | exodus | others | unfit
 
 The bar has edges 2, 1, 1 and is divided into cubes, and each cube into cells. Writers of the formats stand here, apart from the readers.
 """
@@ -362,6 +362,10 @@ def sets():
     own = cae_text(two, sections).replace("*End Instance\n", "").replace("*Part, name=Part-1", "*Instance, name=Part-1-1, part=Part-1")
     own = own.replace("*End Part\n*Assembly, name=Assembly\n*Instance, name=Part-1-1, part=Part-1\n", "*End Instance\n")
     check_group(taken("own.inp", own)[0], (2, "Iron"), cells(4), "an instance with nodes of its own")
+    # PrePoMax's names of what was picked.
+    found = taken("prepomax.inp", STRIP + "*Elset, Elset=Body\n1, 2, 3, 4\n*Elset, Elset=Internal_Selection-1_Load_S2\n4\n*Surface, Name=Load, Type=Element\n"
+                  "Internal_Selection-1_Load_S2, S2\n*Solid section, Elset=Body, Material=Steel\n")[0]
+    check({key: len(group) for key, group in found.items()} == {(2, "Body"): 4, (1, "Load"): 1}, f"PrePoMax: {found}")
     # One name within the part and in the assembly.
     found = taken("twice.inp", cae_text("*Elset, elset=Set-1\n 1, 2\n", "", "*Nset, nset=Set-1, instance=Part-1-1\n 5, 10\n*Elset, elset=Set-1, instance=Part-1-1\n 4,\n"))[0]
     check_group(found, (2, "Part-1-1.Set-1"), cells(1, 2), "a set of the part")
@@ -443,6 +447,36 @@ def dialects():
     check(any("'left' names 1 nodes" in note for note in notes) and any("164" in note for note in notes), f"{notes}")
 
 
+def others():
+    """MED's families and numbers of cells in VTK, where meshio is there."""
+    try:
+        import meshio
+        import numpy
+    except ImportError:
+        return
+    points = [(x, y, 0.) for y in (0, 1) for x in range(5)]
+    squares = numpy.array([(k, k + 1, k + 6, k + 5) for k in range(4)])
+    mesh = meshio.Mesh(points, [("quad", squares), ("line", numpy.array([(0, 5)]))], cell_data={"cell_tags": [numpy.array([-6, -6, -7, -7]), numpy.array([-8])]})
+    mesh.cell_tags = {-6: ["Steel", "All"], -7: ["All"], -8: ["Left"]}
+    mesh.point_tags = {}
+    path = os.path.join(FOLDER, "families.med")
+    meshio.write(path, mesh)
+    with open(path, "rb") as file:
+        found = taken("families.med", file.read(), 2)[0]
+    check_group(found, (2, "Steel"), cells(1, 2), "MED")
+    check_group(found, (2, "All"), cells(3, 4), "MED")
+    check_group(found, (1, "Left"), [(1, 6)], "MED")
+    mesh = meshio.Mesh(points, [("quad", squares[:3]), ("triangle", numpy.array([(3, 4, 9), (3, 9, 8)]))],
+                       cell_data={"partition_id": [numpy.array([1, 1, 2]), numpy.array([2, 2])], "MaterialIds": [numpy.array([5, 0, 7]), numpy.array([7, 7])]})
+    path = os.path.join(FOLDER, "mixed.vtk")
+    meshio.write(path, mesh)
+    with open(path, "rb") as file:
+        found, notes, _ = taken("mixed.vtk", file.read(), 2)
+    check_group(found, (2, "5"), cells(1), "VTK")
+    check_group(found, (2, "7"), [*cells(3), (4, 5, 10), (4, 9, 10)], "VTK")
+    check(any("'MaterialIds'" in note for note in notes), f"{notes}")
+
+
 def exodus():
     """Numbers of sides of shells, classic and in NetCDF 4 with 64-bit integers; numbers of sets; points beside the body."""
     ints = lambda numbers: struct.pack(f">{len(numbers)}i", *numbers)
@@ -511,4 +545,4 @@ def unfit():
 
 
 if __name__ == "__main__":
-    run_parts(formats, bars, damaged, sets, dialects, exodus, unfit)
+    run_parts(formats, bars, damaged, sets, dialects, exodus, others, unfit)

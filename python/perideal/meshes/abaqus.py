@@ -16,6 +16,7 @@ _MAKERS = {"NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "NMAP"}
 _JOINTS = {"TIE", "MPC", "EQUATION", "EMBEDDEDELEMENT", "SHELLTOSOLIDCOUPLING"}
 _WITH_INPUT = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
 _DEEPEST = 20  # *INCLUDE within *INCLUDE
+_OF_PROGRAMS = re.compile(r"_|INTERNAL_SELECTION|INTERNAL-\d")  # how names that no person gave begin
 _EMPTY = re.compile(r",[ \t]*,|^[ \t]*,", re.MULTILINE)  # a field that holds nothing
 _OUTSIDE_QUOTES = re.compile(r'(?:[^,"]|"[^"]*"?)+|(?<=,)(?=,)|^(?=,)')
 
@@ -224,8 +225,8 @@ class _Reader:
 
 
 def _is_internal(name: str, options: dict) -> bool:
-    """Made by Abaqus/CAE for what a person picked, and not named by one."""
-    return "INTERNAL" in options or name.startswith("_")
+    """Made by Abaqus/CAE or PrePoMax for what a person picked, and not named by one."""
+    return "INTERNAL" in options or _OF_PROGRAMS.match(name) is not None
 
 
 def _beside(name: str, given: str, line: int) -> str:
