@@ -103,6 +103,7 @@ namespace PeriDeal
         check_faces();
         check_sides();
         find_touching();
+        note_pieces(mesh, dim);
       }
 
     private:

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <optional>
 #include <tuple>
 
@@ -50,6 +52,22 @@ namespace PeriDeal
         return a == other.a && b == other.b;
       }
     };
+
+
+    std::string text_of_middle(const MshMesh                   &mesh,
+                               const std::vector<unsigned int> &nodes,
+                               const unsigned int               dim)
+    {
+      std::string text;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          double x = 0.;
+          for (const unsigned int node : nodes)
+            x += mesh.points[node][d] / nodes.size();
+          text += (d == 0 ? "(" : ", ") + rounded_text(x);
+        }
+      return text + ")";
+    }
 
 
     class Fit
@@ -102,15 +120,7 @@ namespace PeriDeal
 
       std::string place_of(const std::vector<unsigned int> &nodes) const
       {
-        std::string text;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            double x = 0.;
-            for (const unsigned int node : nodes)
-              x += mesh.points[node][d] / nodes.size();
-            text += (d == 0 ? "(" : ", ") + rounded_text(x);
-          }
-        return text + ")";
+        return text_of_middle(mesh, nodes, dim);
       }
 
       std::string title(const unsigned int cell) const
@@ -263,5 +273,37 @@ namespace PeriDeal
                  const unsigned int                 dim)
   {
     Fit(mesh, surface, name, dim).check();
+  }
+
+
+  void note_pieces(MshMesh &mesh, const unsigned int dim)
+  {
+    std::vector<unsigned int> parent(mesh.points.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](unsigned int node) {
+      while (parent[node] != node)
+        node = parent[node] = parent[parent[node]];
+      return node;
+    };
+    for (const MshElement &cell : mesh.cells)
+      for (unsigned int k = 1; k < cell.n; ++k)
+        parent[root(cell.nodes[k])] = root(cell.nodes[0]);
+    std::map<unsigned int, std::pair<std::size_t, const MshElement *>> pieces; // their sizes
+    for (const MshElement &cell : mesh.cells)
+      {
+        auto &[n, first] = pieces[root(cell.nodes[0])];
+        first            = n++ == 0 ? &cell : first;
+      }
+    if (pieces.size() < 2)
+      return;
+    const auto &[n, first] =
+      std::min_element(pieces.begin(), pieces.end(), [](const auto &one, const auto &two) {
+        return one.second.first < two.second.first;
+      })->second;
+    mesh.notes.push_back(
+      "the cells are " + std::to_string(pieces.size()) +
+      " pieces that have no nodes in common, and are apart; the smallest has " + std::to_string(n) +
+      (n == 1 ? " cell" : " cells") + ", the first of them at " +
+      text_of_middle(mesh, {first->nodes.begin(), first->nodes.begin() + first->n}, dim) + ".");
   }
 } // namespace PeriDeal

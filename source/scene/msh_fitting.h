@@ -30,4 +30,11 @@ namespace PeriDeal
                  const std::vector<MshSurfaceFace> &surface,
                  const std::string                 &name,
                  const unsigned int                 dim);
+
+  /**
+   * Take a note if the cells are pieces that have no nodes in common: whatever lies beside each
+   * other there is apart, also where curved faces of unlike meshes leave no node that touches. Not
+   * collective.
+   */
+  void note_pieces(MshMesh &mesh, const unsigned int dim);
 } // namespace PeriDeal

@@ -366,6 +366,12 @@ def sets():
     found = taken("prepomax.inp", STRIP + "*Elset, Elset=Body\n1, 2, 3, 4\n*Elset, Elset=Internal_Selection-1_Load_S2\n4\n*Surface, Name=Load, Type=Element\n"
                   "Internal_Selection-1_Load_S2, S2\n*Solid section, Elset=Body, Material=Steel\n")[0]
     check({key: len(group) for key, group in found.items()} == {(2, "Body"): 4, (1, "Load"): 1}, f"PrePoMax: {found}")
+    # A reference point, which is no place of the body, has the number of a node; one material in two instances tells no regions apart.
+    point = ("*Node\n1, 9., 9.\n*Nset, nset=RP\n1,\n*Elset, elset=Soft, instance=Part-1-1\n3,\n*Instance, name=Part-1-2, part=Part-1\n9.\n*End Instance\n")
+    status, out, err = run_perideal(["mesh", write("reference.inp", cae_text(assembly=point.split("*Instance")[0]))])
+    check(status == 0 and "'RP' is left out" in out + err and "points" not in out, f"a reference point: {out} {err}")
+    found = taken("instances.inp", cae_text("*Elset, elset=Steel, generate\n1, 4\n", "*Solid Section, elset=Steel, material=STEEL\n,\n", point))[0]
+    check({key: len(group) for key, group in found.items()} == {(2, "Soft"): 1, (2, "Part-1-1.Steel"): 3, (2, "Part-1-2.Steel"): 4}, f"two instances: {found}")
     # One name within the part and in the assembly.
     found = taken("twice.inp", cae_text("*Elset, elset=Set-1\n 1, 2\n", "", "*Nset, nset=Set-1, instance=Part-1-1\n 5, 10\n*Elset, elset=Set-1, instance=Part-1-1\n 4,\n"))[0]
     check_group(found, (2, "Part-1-1.Set-1"), cells(1, 2), "a set of the part")
@@ -541,7 +547,7 @@ def unfit():
     # Instances whose nodes lie on each other are apart.
     parts = cae_text(assembly="*Instance, name=Part-1-2, part=Part-1\n 4.,,\n*End Instance\n")
     status, said, err = run_perideal(["mesh", write("apart.inp", parts)])
-    check(status == 0 and "2 nodes lie on a node" not in said and "4 nodes lie on a node" in said + err, f"{said} {err}")
+    check(status == 0 and "4 nodes lie on a node" in said + err and "2 pieces that have no nodes in common" in said + err, f"{said} {err}")
 
 
 if __name__ == "__main__":

@@ -130,7 +130,7 @@ class _Joined:
                 title = material if material and (material not in self.mesh.element_sets or material in self.mesh.regions) else title
                 self.mesh.element_sets[title] = np.union1d(self.mesh.element_sets.get(title, np.zeros(0, dtype=np.int64)), rows)
             if title in self.mesh.element_sets:
-                self.mesh.regions.add(title)
+                self.mesh.regions[title] = material.upper()
 
     def _take_surface(self, name: str, title: str, depth: int) -> None:
         kind, lines = self.scope.surfaces[name]

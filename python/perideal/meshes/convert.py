@@ -35,11 +35,12 @@ def read(name: str) -> Mesh:
     return mesh
 
 
-
 def write(mesh: Mesh, dimension: int, out: str) -> None:
     """The elements of this dimension, and of one less as far as sets name them."""
     groups = Groups(mesh, dimension)
-    numbers = mesh.numbers if len(mesh.numbers) and mesh.numbers.min() > 0 and mesh.numbers.max() < 2 ** 31 - 1 else np.arange(1, len(mesh.points) + 1)
+    numbers = mesh.numbers
+    if not len(numbers) or numbers.min() <= 0 or numbers.max() >= 2 ** 31 - 1 or len(np.unique(numbers)) < len(numbers):
+        numbers = np.arange(1, len(mesh.points) + 1)
     with open(out, "w", encoding="utf-8", errors="replace") as file:
         file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")
         if groups.names:

@@ -54,7 +54,7 @@ def _is_shell(kind: str, n_dimensions: int) -> bool:
 def _take_blocks(found: dict, mesh: Mesh, n: int, n_dimensions: int) -> np.ndarray:
     """Rows of all elements of the file, -1 of those that are left out."""
     first, kept = 0, []
-    element_numbers = found.get("elem_num_map", found.get("elem_map"))
+    element_numbers = found.get("elem_num_map")
     for k, block_name in _numbered(found, "connect", "eb_names", "eb_prop1", "block", mesh.ids, True):
         nodes = np.asarray(found[f"connect{k}"], dtype=np.int64)
         kind = found.get(f"connect{k}:elem_type", "").strip().upper()

@@ -22,7 +22,7 @@ class Groups:
         self.sides = []  # corners and group
         self.points = []  # node and group
         # Where a file names several materials, these are its regions; one for all of the body says nothing of them.
-        self._regions = mesh.regions if len(mesh.regions) > 1 else set()
+        self._regions = set(mesh.regions if len(set(mesh.regions.values())) > 1 else ())
         self._beside = set()  # sets of elements that Abaqus/CAE writes for a side
         self._take_cells()
         self._take_sides()
@@ -165,7 +165,14 @@ class Groups:
 
     def _take_node_sets(self, surface, owners: dict) -> None:
         cells = [block.nodes for _, block in self._blocks(self.dimension)]
-        for name, rows in self.mesh.node_sets.items():
+        is_corner = np.zeros(len(self.mesh.points), dtype=bool)
+        for nodes in cells:
+            is_corner[nodes.ravel()] = True
+        for name, given in self.mesh.node_sets.items():
+            rows = given[is_corner[given]]
+            if not len(rows):
+                self.mesh.notes.append(f"the set of nodes '{name}' is left out: its nodes are corners of no cell.")
+                continue
             within = np.zeros(len(self.mesh.points) + 1, dtype=bool)
             within[rows] = True
             within[-1] = True  # of the corner that a triangle has not

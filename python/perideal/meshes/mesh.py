@@ -66,7 +66,7 @@ class Mesh:
     face_sets: dict = field(default_factory=dict)  # lists of tuples of corners
     shell_sets: dict = field(default_factory=dict)  # elements of which a set has the face
     free_sets: dict = field(default_factory=dict)  # elements of which a set has the faces around the body
-    regions: set = field(default_factory=set)  # sets of elements that are the file's materials
+    regions: dict = field(default_factory=dict)  # sets of elements that the file gives a material, and that
     ids: dict = field(default_factory=dict)  # numbers that the file gives to sets, by whether they are of elements, and name
     notes: list = field(default_factory=list)
     curved: int = 0  # elements whose middle nodes are left out
