@@ -404,6 +404,8 @@ def dialects():
     # Fields that hold nothing are 0.
     _, _, places = taken("blank.inp", STRIP.replace("1, 0., 0.\n", "1, , \n").replace("7, 1., 1.\n", "7, 1.D0, 1., ,\n").replace("6, 0., 1.\n", "6, , 1.\n"))
     check(places[1] == (0, 0, 0) and places[6] == (0, 1, 0) and places[7] == (1, 1, 0), f"{places}")
+    _, _, places = taken("short.inp", STRIP.replace("1, 0., 0.\n", "1, 0.\n").replace("2, 1., 0.\n", "2, 1., 0., 0.\n"))
+    check(places[1] == (0, 0, 0) and places[2] == (1, 0, 0) and places[3] == (2, 0, 0), f"{places}")
     _, _, places = taken("blanks.inp", "*Node\n1, , 1\n2, 1, 1\n3, 1, 2\n*Element, type=CPE3H\n1, 1, 2, 3\n")
     check(places == {1: (0, 1, 0), 2: (1, 1, 0), 3: (1, 2, 0)}, f"{places}")
     moved = lambda lines: taken("moved.inp", cae_text().replace("part=Part-1\n", f"part=Part-1\n{lines}"))[2]
@@ -429,15 +431,19 @@ def dialects():
     check_group(found, (3, "E"), [tuple(range(1, 9))], "C3D20R")
     check_group(found, (2, "skin"), [(1, 2, 3, 4)], "S4R5")
     check(any("type F3D4" in note for note in notes) and any("2 quadrilaterals" in note for note in notes), f"{notes}")
-    found, notes, _ = taken("shells.inp", cube + twenty + "*Element, type=S4\n2, 1, 2, 4, 3\n*Surface, name=base\n2, SPOS\n*Tie, name=glue\na, b\n")
+    found, tied, _ = taken("shells.inp", cube + twenty + "*Element, type=S4\n2, 1, 2, 4, 3\n*Surface, name=base\n2, SPOS\n*Tie, name=glue\na, b\n")
     check_group(found, (2, "base"), [(1, 2, 3, 4)], "SPOS of a shell")
-    check(any("*TIE" in note and "apart" in note for note in notes), f"{notes}")
+    _, notes, _ = taken("edges.inp", cube + twenty + "*Element, type=T3D2, elset=rim\n2, 1, 2\n")
+    check(any("'rim' names 1 elements" in note for note in notes) and any("1 lines are no cells" in note for note in notes), f"{notes}")
+    check(any("*TIE" in note and "apart" in note for note in tied), f"{tied}")
     # CalculiX numbers faces of shells 1, 2 and then edges.
     shells = STRIP.replace("CPS4R", "S4")
-    found = taken("plane.inp", shells + "*Surface, name=bottom\n1, S3\n*Surface, name=right\n4, S4\n*Surface, name=left\n1, E4\n*Surface, name=face\n1, SPOS\n")[0]
+    found, notes, _ = taken("plane.inp", shells + "*Surface, name=bottom\n1, S3\n*Surface, name=right\n4, S4\n*Surface, name=left\n1, E4\n*Surface, name=face\n1, SPOS\n")
+    check(any("'face' names 1 elements" in note for note in notes), f"{notes}")
     for side, edge in (("bottom", (1, 2)), ("right", (5, 10)), ("left", (1, 6))):
         check_group(found, (1, side), [edge], "edges of shells")
-    for data, words in ((STRIP + "*Ngen\n1, 5, 1\n", ["*NGEN", "not read"]), (STRIP + "*Elgen\n1, 5\n", ["*ELGEN"]), ("*System\n1, 0, 0\n" + STRIP, ["*SYSTEM"]),
+    lacking = STRIP.replace("2, 2, 3, 8, 7\n", "2, 2, 3, 8\n").replace("3, 3, 4, 9, 8\n", "3, 3, 4, 9, 8, 7\n")
+    for data, words in ((lacking, ["CPS4R", "'3, 3, 4, 9, 8, 7'"]), (STRIP.replace("2, 2, 3, 8, 7", "2, 2, , 8, 7"), ["CPS4R", "'2, 2, , 8, 7'"]), (STRIP + "*Ngen\n1, 5, 1\n", ["*NGEN", "not read"]), (STRIP + "*Elgen\n1, 5\n", ["*ELGEN"]), ("*System\n1, 0, 0\n" + STRIP, ["*SYSTEM"]),
                         (cae_text().replace("part=Part-1\n", "part=Part-2\n"), ["'PART-2'"]), (STRIP + "*Include, input=none.inc\n", ["none.inc"])):
         fault = fault_of("maker.inp", data)
         check(all(word in fault for word in words), f"{data[-40:]!r}: '{fault}'")
@@ -472,14 +478,16 @@ def others():
     check_group(found, (2, "Steel"), cells(1, 2), "MED")
     check_group(found, (2, "All"), cells(3, 4), "MED")
     check_group(found, (1, "Left"), [(1, 6)], "MED")
-    mesh = meshio.Mesh(points, [("quad", squares[:3]), ("triangle", numpy.array([(3, 4, 9), (3, 9, 8)]))],
-                       cell_data={"partition_id": [numpy.array([1, 1, 2]), numpy.array([2, 2])], "MaterialIds": [numpy.array([5, 0, 7]), numpy.array([7, 7])]})
+    mesh = meshio.Mesh(points, [("quad", squares[:3]), ("triangle", numpy.array([(3, 4, 9), (3, 9, 8)])), ("vertex", numpy.array([(9,)]))],
+                       cell_data={"partition_id": [numpy.array(numbers) for numbers in ([1, 1, 2], [2, 2], [1])],
+                                  "MaterialIds": [numpy.array(numbers) for numbers in ([5, 0, 7], [7, 7], [3])]})
     path = os.path.join(FOLDER, "mixed.vtk")
     meshio.write(path, mesh)
     with open(path, "rb") as file:
         found, notes, _ = taken("mixed.vtk", file.read(), 2)
     check_group(found, (2, "5"), cells(1), "VTK")
     check_group(found, (2, "7"), [*cells(3), (4, 5, 10), (4, 9, 10)], "VTK")
+    check_group(found, (0, "3"), [(10,)], "VTK")
     check(any("'MaterialIds'" in note for note in notes), f"{notes}")
 
 

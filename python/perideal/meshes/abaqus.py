@@ -152,7 +152,8 @@ class _Reader:
             raise Fault("gives nodes in cylindrical or spherical coordinates (*NODE, SYSTEM), which are not read")
         width = len(_fields(data[0]))
         text = "\n".join(data)
-        numbers = _numbers(text, float) if not _EMPTY.search(text) else []
+        are_alike = len({line.count(",") for line in data}) == 1 and not _EMPTY.search(text)
+        numbers = _numbers(text, float) if are_alike else []
         if len(numbers) == width * len(data) and 2 <= width:
             table = numbers.reshape(-1, width)[:, :4]
         else:
@@ -177,12 +178,10 @@ class _Reader:
             self.scope.left_out.append(numbers)
         else:
             shape, n = found
-            text = "\n".join(data)
-            numbers = _numbers(text, np.int64) if not _EMPTY.search(text) else np.zeros(1)
+            _check_lengths(data, n + 1, kind, self.began)
+            numbers = _numbers("\n".join(data), np.int64)
             if len(numbers) % (n + 1):
-                n_last = len(_fields(data[-1])) - 1
-                raise Fault(f"has elements of type {kind}, of {n} nodes each, that lack some" + (
-                    f": the last one has {n_last} (is the file cut short?)" if n_last < n and len(_fields(data[0])) == n + 1 else f" (below line {self.began})"))
+                raise ValueError(f"'{data[0][:40]}' is no element of {n} nodes")
             table = numbers.reshape(-1, n + 1)
             self.mesh.curved += len(table) if n > shape.corners else 0
             self.axisymmetric += len(table) if is_axisymmetric(kind) else 0
@@ -227,6 +226,21 @@ class _Reader:
 def _is_internal(name: str, options: dict) -> bool:
     """Made by Abaqus/CAE or PrePoMax for what a person picked, and not named by one."""
     return "INTERNAL" in options or _OF_PROGRAMS.match(name) is not None
+
+
+def _check_lengths(data: list, n: int, kind: str, began: int) -> None:
+    """Elements have so many numbers each, in one line or in several. Raises Fault."""
+    lengths = [line.count(",") + (not line.endswith(",")) for line in data]
+    if lengths.count(n) == len(lengths) and not _EMPTY.search("\n".join(data)):
+        return
+    so_far = 0
+    for line, length in zip(data, lengths):
+        so_far += length
+        if so_far > n or _EMPTY.search(line):
+            raise Fault(f"has elements of type {kind}, of {n - 1} nodes each: '{line[:60]}' (below line {began}) is none, or lacks the end of the one before it")
+        so_far %= n
+    if so_far:
+        raise Fault(f"has elements of type {kind}, of {n - 1} nodes each, that lack some: the last one has {max(so_far - 1, 0)} (is the file cut short?)")
 
 
 def _beside(name: str, given: str, line: int) -> str:

@@ -46,7 +46,8 @@ def write(mesh: Mesh, dimension: int, out: str) -> None:
         if groups.names:
             file.write(f"$PhysicalNames\n{len(groups.names)}\n")
             for (of, name), number in groups.names.items():
-                file.write(f'{of} {number} "{" ".join(name.split())}"\n')
+                shown = " ".join(name.replace('"', "'").split())  # names with double quotes could not be written in scenes
+                file.write(f'{of} {number} "{shown}"\n')
             file.write("$EndPhysicalNames\n")
         file.write(f"$Nodes\n{len(numbers)}\n")
         for start in range(0, len(numbers), 100_000):

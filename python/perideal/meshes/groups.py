@@ -153,11 +153,14 @@ class Groups:
         owners = self._sides_of_elements(corners) if sets_of_sides else {}
         for name, faces in mesh.face_sets.items():
             kept = [face for face in faces if SIDES[len(face)].dimension == self.dimension - 1]
+            if len(kept) < len(faces):
+                mesh.notes.append(f"'{name}' names {len(faces) - len(kept)} edges or faces that are no sides of cells of dimension {self.dimension}: they are left out.")
             owners.setdefault(name, {}).update((tuple(sorted(face)), face) for face in kept)
         surface, elements = corners[n == 1], elements[n == 1]
         for name, rows in mesh.free_sets.items():
             _add_faces(owners, name, surface[np.isin(elements, rows)])
         self._take_node_sets(surface, owners)
+        self._take_other_elements()
         self._beside = set()
         owner = self._settle(owners, "faces")
         for face, name in owner.items():
@@ -188,6 +191,23 @@ class Groups:
                 self.points += [(int(row), number) for row in np.unique(rows)]
             else:
                 self.mesh.notes.append(f"the set of nodes '{name}' has no face of the surface: it is left out.")
+
+    def _take_other_elements(self) -> None:
+        """Sets of elements that are neither cells nor sides: points are named, others are told."""
+        lost = {}
+        for dimension in range(4):
+            for first, block in self._blocks(dimension):
+                for sets in (self.mesh.element_sets, self.mesh.shell_sets):
+                    for name, rows in sets.items():
+                        rows = rows[(rows >= first) & (rows < first + len(block.numbers))] - first
+                        if dimension == 0 and self.dimension > 1 and len(rows):
+                            number = self._number(0, name)
+                            self.points += [(int(row), number) for row in np.unique(block.nodes[rows])]
+                        elif (dimension > 0 and dimension < self.dimension - 1) or (sets is self.mesh.shell_sets and dimension >= self.dimension):
+                            lost[name] = lost.get(name, 0) + len(rows)
+        for name, n in lost.items():
+            if n:
+                self.mesh.notes.append(f"'{name}' names {n} elements that are neither cells nor sides of cells: they are left out.")
 
 
 def _add_faces(owners: dict, name: str, faces) -> None:
