@@ -124,9 +124,12 @@ class _Joined:
     def take_sections(self) -> None:
         """Sets that sections name are regions; those that no person named have the name of their material."""
         for given, material in self.scope.sections:
-            rows, name = self._rows("element", given, "a section"), given.upper()
-            title = self._title(name)
-            if ("element", name) in self.scope.internal and len(rows):
+            rows = self._rows("element", given, "a section")
+            piece, name = self._find(given, lambda one, key: key in one.scope.sets["element"])
+            if piece is None:  # one element by its number
+                continue
+            title = piece._title(name)
+            if ("element", name) in piece.scope.internal and len(rows):
                 title = material if material and (material not in self.mesh.element_sets or material in self.mesh.regions) else title
                 self.mesh.element_sets[title] = np.union1d(self.mesh.element_sets.get(title, np.zeros(0, dtype=np.int64)), rows)
             if title in self.mesh.element_sets:
