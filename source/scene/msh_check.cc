@@ -3,12 +3,14 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <perideal/scene/lists.h>
 #include <perideal/scene/msh_file.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "msh_fitting.h"
 #include "msh_shapes.h"
 #include "msh_touching.h"
 
@@ -80,17 +82,19 @@ namespace PeriDeal
 
       void check()
       {
-        Vector3 size;
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            const auto ends =
-              std::minmax_element(mesh.points.begin(),
-                                  mesh.points.end(),
-                                  [d](const Vector3 &a, const Vector3 &b) { return a[d] < b[d]; });
-            size[d] = (*ends.second)[d] - (*ends.first)[d];
-          }
-        check_plane(size);
-        extent = *std::max_element(size.begin(), size.begin() + dim);
+        Vector3 low, high;
+        low.fill(1e300);
+        high.fill(-1e300);
+        for (const MshElement &cell : mesh.cells)
+          for (unsigned int k = 0; k < cell.n; ++k)
+            for (unsigned int d = 0; d < 3; ++d)
+              {
+                low[d]  = std::min(low[d], mesh.points[cell.nodes[k]][d]);
+                high[d] = std::max(high[d], mesh.points[cell.nodes[k]][d]);
+              }
+        for (unsigned int d = 0; d < dim; ++d)
+          extent = std::max(extent, high[d] - low[d]);
+        check_plane(low, high);
         for (MshElement &cell : mesh.cells)
           if (orientation(cell) < 0)
             turn_around(cell);
@@ -99,6 +103,7 @@ namespace PeriDeal
         check_faces();
         check_sides();
         find_touching();
+        note_pieces(mesh, dim);
       }
 
     private:
@@ -351,10 +356,11 @@ namespace PeriDeal
                cross_product_3d(between(n[0], face.across), between(beside[0], beside[1])).norm();
       }
 
-      /** Where pieces of the surface touch that share no nodes. */
+      /** Where pieces of the surface touch that share no nodes, or whose faces do not fit. */
       void find_touching()
       {
-        std::vector<MshEdge> edges;
+        std::vector<MshEdge>        edges;
+        std::vector<MshSurfaceFace> around;
         for (std::size_t k = 0; k < faces.size(); ++k)
           {
             const auto &n = faces[k].nodes;
@@ -362,6 +368,7 @@ namespace PeriDeal
                 (k + 1 < faces.size() && faces[k + 1].nodes == n))
               continue;
             mesh.surface += dim > 1 ? area(faces[k]) : 0.;
+            around.push_back({n, faces[k].element});
             for (unsigned int a = 0; a < 4 && n[a] != invalid; ++a)
               for (unsigned int b = a + 1; b < 4 && n[b] != invalid; ++b)
                 if (n[3] == invalid ||
@@ -369,20 +376,33 @@ namespace PeriDeal
                               faces[k].across == n[a] || faces[k].across == n[b]))
                   edges.emplace_back(n[a], n[b]);
           }
-        if (dim > 1)
-          mesh.touching = touching_nodes(mesh, edges, dim);
+        if (dim == 1)
+          return;
+        check_fit(mesh, around, name, dim);
+        mesh.touching = touching_nodes(mesh, edges, dim);
       }
 
-      /** A mesh of two dimensions lies in the plane of x and y. */
-      void check_plane(const Vector3 &size) const
+      /** A mesh of two dimensions lies in the plane of x and y, or one parallel to it; one of one
+       * dimension along x. */
+      void check_plane(const Vector3 &low, const Vector3 &high) const
       {
         for (unsigned int d = 0; d < dim; ++d)
-          if (dim == 2 && size[d] <= smallest_length * size[2])
+          if (dim == 2 && high[d] - low[d] <= smallest_length * (high[2] - low[2]))
             msh_error(name,
                       mesh.cells.front().line,
                       "found a mesh in the plane of " + std::string(d == 0 ? "y" : "x") +
                         " and z, expected one in the plane of x and y: in two dimensions z is not "
                         "looked at. Turn the mesh.");
+        constexpr double round_off = 1e-4; // lengths are wrong by the square of it
+        for (unsigned int d = dim; d < 3; ++d)
+          if (high[d] - low[d] > round_off * extent)
+            msh_error(name,
+                      mesh.cells.front().line,
+                      "found " + std::string(1, "xyz"[d]) + " from " + rounded_text(low[d]) +
+                        " to " + rounded_text(high[d]) + " in a mesh of dimension " +
+                        std::to_string(dim) + ", expected one " +
+                        (dim == 2 ? "in the plane of x and y: z is not looked at." :
+                                    "along x: y and z are not looked at."));
       }
 
       MshMesh           &mesh;

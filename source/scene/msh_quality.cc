@@ -36,12 +36,17 @@ namespace PeriDeal
     }
 
 
+    struct Volume
+    {
+      double sum, least; // what the edges at one of the points span, as at corners
+    };
+
     /** By Gauss' points, two in each direction: exact. */
-    double volume_of(const MshMesh &mesh, const MshElement &cell, const unsigned int dim)
+    Volume volume_of(const MshMesh &mesh, const MshElement &cell, const unsigned int dim)
     {
       const auto at = [&](const unsigned int corner) { return mesh.points[cell.nodes[corner]]; };
       if (dim == 1)
-        return between(at(0), at(1), 1)[0];
+        return {between(at(0), at(1), 1)[0], 1.};
       constexpr unsigned int ends[3][4][2] = {{{0, 1}, {3, 2}, {4, 5}, {7, 6}}, // by direction
                                               {{0, 3}, {1, 2}, {4, 7}, {5, 6}},
                                               {{0, 4}, {1, 5}, {3, 7}, {2, 6}}};
@@ -50,7 +55,7 @@ namespace PeriDeal
         for (unsigned int k = 0; k < 1u << (dim - 1); ++k)
           along[d][k] = between(at(ends[d][k][0]), at(ends[d][k][1]), dim);
       const double s[2] = {0.5 - std::sqrt(1. / 12.), 0.5 + std::sqrt(1. / 12.)};
-      double       sum  = 0.;
+      Volume       volume{0., 1.};
       for (unsigned int q = 0; q < 1u << dim; ++q)
         {
           const double x[3] = {s[q & 1], s[q >> 1 & 1], s[q >> 2]};
@@ -62,9 +67,14 @@ namespace PeriDeal
               if (dim == 3)
                 edges[d] += (1. - u) * v * along[d][2] + u * v * along[d][3];
             }
-          sum += determinant_of(edges, dim);
+          double product = 1.;
+          for (unsigned int d = 0; d < dim; ++d)
+            product *= edges[d].norm();
+          const double spanned = determinant_of(edges, dim);
+          volume.sum += spanned / (1u << dim);
+          volume.least = std::min(volume.least, product > 0. ? spanned / product : 0.);
         }
-      return sum / (1u << dim);
+      return volume;
     }
 
 
@@ -85,8 +95,8 @@ namespace PeriDeal
         quality.lower.fill(1e300);
         quality.upper.fill(-1e300);
         quality.smallest = 1e300;
-        for (const MshElement &cell : mesh.cells)
-          add(cell);
+        for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+          add(mesh.cells[c], c);
         const auto half = lengths.begin() + lengths.size() / 2;
         std::nth_element(lengths.begin(), half, lengths.end());
         quality.median = *half;
@@ -94,9 +104,12 @@ namespace PeriDeal
       }
 
     private:
-      void add(const MshElement &cell)
+      void add(const MshElement &cell, const std::size_t index)
       {
-        quality.volume += volume_of(mesh, cell, dim);
+        const Volume volume = volume_of(mesh, cell, dim);
+        quality.volume += volume.sum;
+        if (volume.least <= 0.)
+          add_spanned(volume.least, mesh.points[cell.nodes[0]], index);
         const MshShape &shape = shape_of_cell(dim, cell.n);
         for (unsigned int corner = 0; corner < cell.n; ++corner)
           {
@@ -117,13 +130,18 @@ namespace PeriDeal
                 if (corner < end)
                   add_length(length, p, mesh.points[cell.nodes[end]]);
               }
-            const double sine = determinant_of(edges, dim) / product;
-            if (dim > 1 && sine < quality.worst)
-              {
-                quality.worst    = sine;
-                quality.worst_at = p;
-              }
+            if (dim > 1)
+              add_spanned(determinant_of(edges, dim) / product, p, index);
           }
+      }
+
+      void add_spanned(const double spanned, const Place &place, const std::size_t index)
+      {
+        if (spanned >= quality.worst)
+          return;
+        quality.worst      = spanned;
+        quality.worst_at   = place;
+        quality.worst_cell = index;
       }
 
       void add_length(const double length, const Place &a, const Place &b)

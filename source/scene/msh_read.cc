@@ -7,6 +7,7 @@
 #include <perideal/scene/lists.h>
 #include <perideal/scene/msh_file.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -31,8 +32,10 @@ namespace PeriDeal
 
     bool is_gmsh(const std::string &text, const std::string &path)
     {
-      return fs::path(path).extension() == ".msh" || text.compare(0, 11, "$MeshFormat") == 0 ||
-             text.empty();
+      std::string extension = fs::path(path).extension().string();
+      for (char &letter : extension)
+        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+      return extension == ".msh" || text.compare(0, 11, "$MeshFormat") == 0 || text.empty();
     }
 
 
@@ -114,6 +117,27 @@ namespace PeriDeal
     }
 
 
+    /** Cells that are folded between their corners, which check_msh() looks at: of hexahedra and
+     * wedges with twisted faces. In 2D convex cells are divided into such. */
+    void check_quality(const MshMesh     &mesh,
+                       const MshQuality  &quality,
+                       const std::string &file_name,
+                       const unsigned int dim)
+    {
+      constexpr double least = 1e-5;
+      if (dim < 3 || quality.worst > least)
+        return;
+      const MshElement &cell = mesh.cells[quality.worst_cell];
+      msh_error(file_name,
+                cell.line,
+                "the cell " + std::to_string(cell.number) + " is folded or flat" +
+                  (mesh.n_divided > 0 ? " once it is divided" : " inside") + ", at " +
+                  place_text(quality.worst_at, dim) + ": found that its edges span " +
+                  rounded_text(quality.worst, 2) + " of a right corner there, expected more than " +
+                  rounded_text(least) + ". Its faces are twisted, or its nodes nearly in a plane.");
+    }
+
+
     /** What became of the cells, and what that means. */
     void note_cells(MshMesh                                  &mesh,
                     const std::string                        &file_name,
@@ -130,7 +154,8 @@ namespace PeriDeal
           "'Coherence' before meshing, or 'RemoveDuplicateNodes').");
       if (dim == 1)
         return;
-      const MshQuality quality  = quality_of_msh(mesh, dim);
+      const MshQuality quality = quality_of_msh(mesh, dim);
+      check_quality(mesh, quality, file_name, dim);
       constexpr double poor     = 0.1;
       const double     unlike   = quality.median / quality.smallest;
       std::string      note     = quoted + ": ";
@@ -177,6 +202,8 @@ namespace PeriDeal
       std::string              text = read_file(path, most_bytes_of_data, fault);
       if (!fault.empty())
         refuse_file(file_name, fault + places_looked_at(file_name, folder));
+      if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) // the mark of UTF-8
+        text.erase(0, 3);
       if (!is_gmsh(text, path))
         text = converted(path, file_name, dim, notes);
       MshMesh mesh = dim == 0 ? parse_highest(text, file_name) : parse_msh(text, file_name, dim);

@@ -16,7 +16,8 @@ TIME = 20  # seconds
 MEMORY = 3 << 30  # bytes of addresses
 
 MESHES = [(2, "tests/data/two_materials.msh"), (2, "prm/heat/gmsh_plate.msh"),
-          (2, "prm/papers/le_2014/plate_with_hole.msh"), (3, "tests/data/hexes.msh"), (2, "tests/data/triangles.msh")]
+          (2, "prm/papers/le_2014/plate_with_hole.msh"), (3, "tests/data/hexes.msh"), (2, "tests/data/triangles.msh"),
+          (2, "prm/elasticity/ring_of_triangles.msh")]
 
 NUMBERS = ["0", "-1", "1", "2", "3", "5", "15", "99", "255", "65536", "2147483647", "4294967296", "1e9", "1e-300", "1e300", "-1e-9",
            "nan", "inf", "0x10", "1,5", "$Nodes", "$EndElements", "\"a b\"", ""]

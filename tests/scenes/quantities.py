@@ -42,7 +42,7 @@ def spot():
         heat, hottest, end = (rows(run, name, model) for name in ("heat", "hottest at x", "end"))
         check(len(heat) == 80 and max(heat) == 4, f"{model}: {len(heat)} rows")
         for t in (1, 2, 4):
-            table.add(f"{model}: heat at t = {t}", heat[t], power * t, relative=5e-3)
+            table.add(f"{model}: heat at t = {t}", heat[t], power * t, relative=1e-6)
             check(0.9 + t - 0.5 <= hottest[t] <= 1.01 + t, f"{model}: it is hottest at x = {hottest[t]} at t = {t}")
         check(abs(end[4]) < 1e-6, f"{model}: mean temperature of the end {end[4]}")
         for name in ("hottest", "hottest at x", "hottest at y", "heat", "coldest above"):

@@ -327,3 +327,33 @@ TEST(MshCheck, pieces_that_touch)
   check_msh(mesh, "part.msh", 2);
   EXPECT_EQ(mesh.touching, (std::vector<unsigned int>{1, 4, 6, 7}));
 }
+
+
+TEST(MshCheck, faces_that_do_not_fit)
+{
+  // In place of the right cube tetrahedra: blocks of an entity, its dimension, the type, how many.
+  const auto cube_and = [](const unsigned int n, const std::string &tetrahedra) {
+    return with(with(with(with(cubes, "1 12\n1 3 0 12\n", "1 13\n1 3 0 13\n"),
+                          "12 2 1 1\n",
+                          "12 2 1 1\n13 3 0 0\n"),
+                     "2 3\n1 2 3 1\n1 1 4 5 2\n1 3 5 2\n",
+                     "2 " + std::to_string(1 + n) + "\n1 3 5 1\n"),
+                "3 2 3 6 5 8 9 12 11\n",
+                "2 3 4 " + std::to_string(n) + "\n" + tetrahedra);
+  };
+  // With three of the corners of the cube's face.
+  expect_fault(cube_and(2, "3 2 5 8 3\n4 5 11 8 3\n"),
+               3,
+               27,
+               {"triangles against a quadrilateral", "hexahedron 2", "tetrahedron 4", "(1, 0.5"});
+  // With one of its edges, and without a node of it.
+  for (const auto &[nodes, what] :
+       std::vector<std::pair<std::string, std::string>>{{"2 8 3 6", "at 1 edges"},
+                                                        {"13 3 6 9", "2 pieces"}})
+    {
+      MshMesh mesh = parse_msh(cube_and(1, "3 " + nodes + "\n"), "part.msh", 3);
+      check_msh(mesh, "part.msh", 3);
+      ASSERT_EQ(mesh.notes.size(), 1u);
+      EXPECT_NE(mesh.notes[0].find(what), std::string::npos) << mesh.notes[0];
+    }
+}

@@ -57,10 +57,11 @@ namespace PeriDeal
     double volume = 0.;                              // area in 2D, length in 1D
     /**
      * The least of all corners of cells: what unit vectors along the edges there span, 1 where they
-     * are at right angles.
+     * are at right angles. Also of Gauss' points where that is not positive.
      */
-    double worst = 1.;
-    Place  smallest_at{}, worst_at{};
+    double      worst      = 1.;
+    std::size_t worst_cell = 0; // its index
+    Place       smallest_at{}, worst_at{};
   };
 
   /** There are no cells of the dimension. */

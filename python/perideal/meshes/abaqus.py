@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the PeriDeal authors
-"""Input files of Abaqus and CalculiX (.inp): nodes, elements, *NSET, *ELSET, *SURFACE, parts and instances. What is no mesh is passed over."""
+"""Input files of Abaqus and CalculiX (.inp): nodes, elements, *NSET, *ELSET, *SURFACE, sections, parts and instances. What is no mesh is passed over."""
 
 import os
 import re
@@ -8,49 +8,41 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .mesh import Block, Fault, HEXAHEDRON, LINE, Mesh, Numbering, PYRAMID, QUADRILATERAL, TETRAHEDRON, TRIANGLE, WEDGE
+from .abaqus_sets import join
+from .abaqus_types import is_axisymmetric, is_shell, shape_of
+from .mesh import Fault, Mesh, lines_of
 
-_SOLID = re.compile(r"(C3D|DC3D|DCC3D|AC3D|Q3D|COH3D|SC|CSS|F3D)(\d+)")
-_PLANE = re.compile(r"(CPS|CPE|CPEG|CAX|CGAX|DC2D|DCC2D|DCAX|AC2D|ACAX|Q2D|STRI|S|DS|M3D|R3D|R2D|SFM3D|COH2D|F2D|WARP2D)(\d+)")
-_LINE = re.compile(r"(B2|B3|T2D|T3D|PIPE2|PIPE3|DC1D|SAX|RAX|R2D|AC1D|FAX|F2D|MAX)(\d)")
-_SOLIDS = {4: TETRAHEDRON, 10: TETRAHEDRON, 5: PYRAMID, 13: PYRAMID, 6: WEDGE, 15: WEDGE, 8: HEXAHEDRON, 20: HEXAHEDRON, 27: HEXAHEDRON}
-_PLANES = {3: TRIANGLE, 6: TRIANGLE, 4: QUADRILATERAL, 8: QUADRILATERAL, 9: QUADRILATERAL}
 _MAKERS = {"NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "NMAP"}
-_MOST_INCLUDED = 50
-
-
-def shape_of(kind: str):
-    """The shape of an element type and its number of nodes, or nothing for what has no shape (springs, masses)."""
-    kind = kind.upper()
-    if match := _SOLID.match(kind):
-        n = int(match[2])
-        return (_SOLIDS[n], n) if n in _SOLIDS else None
-    if kind.startswith("STRI65"):
-        return TRIANGLE, 6
-    if kind == "R2D2" or kind.startswith("F2D2"):
-        return LINE, 2
-    if match := _PLANE.match(kind):
-        n = int(match[2][0])
-        return (_PLANES[n], n) if n in _PLANES else None
-    if match := _LINE.match(kind):
-        n = int(match[2])
-        if kind.startswith(("B", "PIPE")):  # B21 has 2 nodes, B22 3
-            n += 1
-        return (LINE, n) if n in (2, 3) else None
-    return None
+_JOINTS = {"TIE", "MPC", "EQUATION", "EMBEDDEDELEMENT", "SHELLTOSOLIDCOUPLING"}
+_WITH_INPUT = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
+_DEEPEST = 20  # *INCLUDE within *INCLUDE
+_OF_PROGRAMS = re.compile(r"_|INTERNAL_SELECTION|INTERNAL-\d")  # how names that no person gave begin
+_EMPTY = re.compile(r",[ \t]*,|^[ \t]*,", re.MULTILINE)  # a field that holds nothing
+_OUTSIDE_QUOTES = re.compile(r'(?:[^,"]|"[^"]*"?)+|(?<=,)(?=,)|^(?=,)')
 
 
 @dataclass
 class Scope:
-    """What stands within a part or an instance, or outside all of them."""
+    """What stands within a part or an instance, or outside all of them. Names of sets and surfaces are in capital letters: case does not
+    tell them apart."""
 
     nodes: list = field(default_factory=list)  # tables of number, x, y, z
-    elements: list = field(default_factory=list)  # shape, table of number and corners
-    node_sets: dict = field(default_factory=dict)  # numbers, names of sets, or (instance, numbers)
-    element_sets: dict = field(default_factory=dict)
-    surfaces: dict = field(default_factory=dict)  # "element" or "node", and words
-    matrix: np.ndarray = None
-    shift: np.ndarray = None
+    elements: list = field(default_factory=list)  # shape, table of number and corners, whether they are shells
+    left_out: list = field(default_factory=list)  # numbers of elements of other types
+    # By "node" and "element": arrays of numbers, names of sets, and what abaqus_sets makes members of
+    sets: dict = field(default_factory=lambda: {"node": {}, "element": {}})
+    surfaces: dict = field(default_factory=dict)  # "ELEMENT", "NODE" or "UNION", and fields of lines
+    internal: set = field(default_factory=set)  # "node", "element" or "surface", and a name that no person gave
+    sections: list = field(default_factory=list)  # set of elements and material
+    placing: list = field(default_factory=list)  # the lines of an instance: shift; two points of an axis and an angle
+    of_part: str = ""
+
+    def members(self, kind: str, name: str) -> list:
+        return self.sets[kind].setdefault(name, [])
+
+    def copy(self) -> "Scope":
+        sets = {kind: {name: list(members) for name, members in own.items()} for kind, own in self.sets.items()}
+        return Scope(list(self.nodes), list(self.elements), list(self.left_out), sets, dict(self.surfaces), set(self.internal), list(self.sections))
 
 
 def read(name: str) -> Mesh:
@@ -61,78 +53,94 @@ def read(name: str) -> Mesh:
 class _Reader:
     def __init__(self):
         self.mesh = Mesh()
-        self.outside, self.scope = Scope(), None
-        self.parts, self.instances = {}, {}
-        self.passed_over, self.skipped = {}, set()
-        self.n_included = 0
+        self.outside = self.scope = Scope()
+        self.parts, self.instances = {}, {}  # by names in capital letters
+        self.spelled = {}  # names as they were given first
+        self.passed_over, self.joints, self.axisymmetric = {}, set(), 0
+        self.keyword, self.options, self.data, self.began = None, {}, [], 0
 
     def read(self, name: str) -> Mesh:
-        self.scope = self.outside
-        self._read_file(name)
-        self._join()
-        for kind, n in self.passed_over.items():
-            self.mesh.notes.append(f"{n} elements of type {kind} are left out, which have no shape.")
+        self._read_file(name, 0)
+        self._take()
+        self._note()
+        join(self.mesh, self.outside, self.instances or self.parts, self.spelled)
         return self.mesh
 
-    def _read_file(self, name: str) -> None:
-        with open(name, encoding="latin-1") as file:
-            lines = file.read().splitlines()
-        keyword, options, data, began = None, {}, [], 0
-        at = 0
+    def _note(self) -> None:
+        notes = self.mesh.notes
+        for name, scope in self.instances.items():  # Abaqus/CAE also writes instances with nodes of their own
+            if scope.of_part not in self.parts and not scope.nodes:
+                raise Fault(f"has an instance '{self.spelled[name]}' of a part '{scope.of_part}', which is not in the file")
+        for kind, n in self.passed_over.items():
+            notes.append(f"{n} elements of type {kind} are left out, which have no shape.")
+        if self.axisymmetric:
+            notes.append(f"{self.axisymmetric} elements are axisymmetric in the file: here they are a plane body.")
+        if self.joints:
+            notes.append(f"{', '.join(sorted('*' + one for one in self.joints))} of the file joins nodes or parts: that is not read, and what has no nodes in common is apart.")
+        used = {scope.of_part for scope in self.instances.values()}
+        for part, scope in self.parts.items():
+            if self.instances and part not in used and scope.elements:
+                notes.append(f"the part '{self.spelled[part]}' has no instance: it is left out.")
+
+    def _read_file(self, name: str, depth: int) -> None:
+        """An included file goes on with the lines of the keyword before it."""
+        lines, at = lines_of(name), 0
         while at < len(lines):
             line = lines[at].strip()
             at += 1
-            if line.startswith("*") and not line.startswith("**"):
-                self._take(keyword, options, data, began, name)
-                while line.endswith(",") and at < len(lines) and not lines[at].startswith("*"):
+            if line.startswith("*"):
+                if line.startswith("**"):
+                    continue
+                while line.endswith(",") and at < len(lines) and _goes_on(lines[at]):
                     line += lines[at].strip()
                     at += 1
                 keyword, options = _keyword(line)
-                data, began = [], at
-            elif line and not line.startswith("**"):
-                if keyword is None:
+                if keyword == "INCLUDE" and options.get("INPUT"):
+                    if depth == _DEEPEST:
+                        raise Fault("includes files without end (*INCLUDE)")
+                    self._read_file(_beside(name, options["INPUT"], at), depth + 1)
+                    continue
+                self._take()
+                self.keyword, self.options, self.data, self.began = keyword, options, [], at
+                if keyword in _WITH_INPUT and options.get("INPUT"):
+                    self._read_file(_beside(name, options["INPUT"], at), depth + 1)
+            elif line:
+                if self.keyword is None:
                     raise Fault(f"is no input file of Abaqus or CalculiX: line {at} comes before all keywords")
-                data.append(line)
-        self._take(keyword, options, data, began, name)
+                self.data.append(line)
 
-    def _take(self, keyword, options, data, line, name) -> None:
+    def _take(self) -> None:
         """What a keyword and its lines say."""
+        keyword, options = self.keyword, self.options
         if keyword is None:
             return
-        if keyword in _MAKERS:
-            self.skipped.add(keyword)
-        elif keyword == "INCLUDE" and options.get("INPUT"):
-            self.n_included += 1
-            if self.n_included > _MOST_INCLUDED:
-                raise Fault("includes files without end (*INCLUDE)")
-            inner = os.path.join(os.path.dirname(name), options["INPUT"].strip('"'))
-            if not os.path.isfile(inner):
-                raise Fault(f"includes '{options['INPUT']}' (line {line}), which is not there")
-            self._read_file(inner)
+        if keyword in _MAKERS or (keyword == "SYSTEM" and self.data):
+            raise Fault(f"makes or moves nodes or elements by *{keyword} (line {self.began}), which is not read: let the program that made it write all of them")
+        if keyword in _JOINTS:
+            self.joints.add(keyword)
+        elif keyword.endswith("SECTION") and keyword != "SURFACESECTION" and options.get("ELSET"):
+            self.scope.sections.append((options["ELSET"], options.get("MATERIAL", "")))
         elif take := {"NODE": self._nodes, "ELEMENT": self._elements, "NSET": self._set, "ELSET": self._set, "SURFACE": self._surface,
-                      "PART": self._begin, "INSTANCE": self._begin, "ENDPART": self._end, "ENDINSTANCE": self._end}.get(keyword):
+                      "PART": self._part, "INSTANCE": self._instance, "ENDPART": self._end, "ENDINSTANCE": self._end}.get(keyword):
             try:
-                take(keyword, options, data)
+                take(keyword, options, self.data)
             except (ValueError, OverflowError) as error:
-                raise Fault(f"has something else than numbers below *{keyword} in line {line}: {error}") from None
+                raise Fault(f"has something else than numbers below *{keyword} in line {self.began}: {error}") from None
 
-    def _begin(self, keyword, options, data) -> None:
-        given = options.get("NAME", "")
-        self.scope = Scope()
-        if keyword == "PART":
-            self.parts[given.upper()] = self.scope
-            return
-        part = self.parts.get(options.get("PART", "").upper())
-        if part is not None:
-            self.scope.nodes, self.scope.elements = list(part.nodes), list(part.elements)
-            self.scope.node_sets, self.scope.element_sets, self.scope.surfaces = dict(part.node_sets), dict(part.element_sets), dict(part.surfaces)
-        if data:
-            self.scope.shift = np.array([float(word) for word in _words(data[0])][:3])
-        if len(data) > 1:
-            numbers = [float(word) for word in _words(data[1])]
-            if len(numbers) == 7:
-                self.scope.matrix = numbers
-        self.instances[given] = self.scope
+    def _named(self, name: str) -> str:
+        """The name of a set, a surface, a part or an instance in capital letters."""
+        self.spelled.setdefault(name.upper(), name)
+        return name.upper()
+
+    def _part(self, keyword, options, data) -> None:
+        self.scope = self.parts[self._named(options.get("NAME", ""))] = Scope()
+
+    def _instance(self, keyword, options, data) -> None:
+        part = options.get("PART", "").upper()
+        self.scope = self.parts[part].copy() if part in self.parts else Scope()
+        self.scope.of_part = part
+        self.scope.placing = [[_real(word) for word in _fields(line)] for line in data]
+        self.instances[self._named(options.get("NAME", ""))] = self.scope
 
     def _end(self, keyword, options, data) -> None:
         self.scope = self.outside
@@ -142,12 +150,14 @@ class _Reader:
             return
         if options.get("SYSTEM", "R").upper()[:1] != "R":
             raise Fault("gives nodes in cylindrical or spherical coordinates (*NODE, SYSTEM), which are not read")
-        width = len(_words(data[0]))
-        numbers = _numbers(data, float)
+        width = len(_fields(data[0]))
+        text = "\n".join(data)
+        are_alike = len({line.count(",") for line in data}) == 1 and not _EMPTY.search(text)
+        numbers = _numbers(text, float) if are_alike else []
         if len(numbers) == width * len(data) and 2 <= width:
             table = numbers.reshape(-1, width)[:, :4]
         else:
-            rows = [[float(word) for word in _words(line)][:4] for line in data]
+            rows = [[_real(word) for word in _fields(line)][:4] for line in data]
             if min(map(len, rows)) < 2:
                 raise ValueError(f"'{data[0][:40]}' is no node")
             table = np.zeros((len(rows), 4))
@@ -157,172 +167,121 @@ class _Reader:
         full[:, :table.shape[1]] = table
         self.scope.nodes.append(full)
         if options.get("NSET"):
-            self.scope.node_sets.setdefault(options["NSET"], []).extend(full[:, 0].astype(np.int64).tolist())
+            self.scope.members("node", self._named(options["NSET"])).append(full[:, 0].astype(np.int64))
 
     def _elements(self, keyword, options, data) -> None:
         kind = options.get("TYPE", "")
         found = shape_of(kind)
         if found is None:
+            numbers = np.array([int(first) for first in (line.split(",")[0].strip() for line in data) if first.isdigit()], dtype=np.int64)
             self.passed_over[kind or "?"] = self.passed_over.get(kind or "?", 0) + len(data)
-            return
-        shape, n = found
-        numbers = _numbers(data, np.int64)
-        if len(numbers) % (n + 1):
-            n_last = len(_words(data[-1])) - 1
-            raise Fault(f"has elements of type {kind}, of {n} nodes each, that lack some" + (
-                f": the last one has {n_last} (is the file cut short?)" if n_last < n and len(_words(data[0])) == n + 1 else ""))
-        table = numbers.reshape(-1, n + 1)
-        if n > shape.corners:
-            self.mesh.curved += len(table)
-        self.scope.elements.append((shape, table[:, :shape.corners + 1]))
+            self.scope.left_out.append(numbers)
+        else:
+            shape, n = found
+            _check_lengths(data, n + 1, kind, self.began)
+            numbers = _numbers("\n".join(data), np.int64)
+            if len(numbers) % (n + 1):
+                raise ValueError(f"'{data[0][:40]}' is no element of {n} nodes")
+            table = numbers.reshape(-1, n + 1)
+            self.mesh.curved += len(table) if n > shape.corners else 0
+            self.axisymmetric += len(table) if is_axisymmetric(kind) else 0
+            self.scope.elements.append((shape, table[:, :shape.corners + 1], is_shell(kind)))
+            numbers = table[:, 0]
         if options.get("ELSET"):
-            self.scope.element_sets.setdefault(options["ELSET"], []).extend(table[:, 0].tolist())
+            self.scope.members("element", self._named(options["ELSET"])).append(numbers)
 
     def _set(self, keyword, options, data) -> None:
-        name = options.get(keyword, "")
+        kind = "node" if keyword == "NSET" else "element"
+        name = self._named(options.get(keyword, ""))
         members = []
-        for line in data:
-            words = _words(line)
-            if "GENERATE" in options:
-                first, last, *step = (int(word) for word in words)
-                if last - first > 10 ** 9:
-                    raise ValueError(f"'{line[:40]}' generates too many")
-                members.extend(range(first, last + 1, max(1, step[0] if step else 1)))
-            else:
-                members.extend(int(word) if word.isascii() and word.isdigit() else word for word in words)
+        if kind == "node" and options.get("ELSET"):
+            members.append(("elements", options["ELSET"]))
+        elif "GENERATE" in options:
+            for line in data:
+                first, last, *step = (int(word) for word in _fields(line) if word)
+                if len(step) > 1 or last - first > 10 ** 9:
+                    raise ValueError(f"'{line[:40]}' is no range of numbers")
+                members.append(np.arange(first, last + 1, max(1, step[0] if step else 1)))
+        else:
+            words = [word for line in data for word in _fields(line) if word]
+            members.append(np.array([word for word in words if word.isascii() and word.isdigit()], dtype=np.int64))
+            members += [word for word in words if not (word.isascii() and word.isdigit())]
         if options.get("INSTANCE"):
-            members = [(options["INSTANCE"], members)]
-        sets = self.scope.node_sets if keyword == "NSET" else self.scope.element_sets
-        sets.setdefault(name, []).extend(members)
+            members = [("instance", options["INSTANCE"], members)]
+        known = name in self.scope.sets[kind]
+        self.scope.members(kind, name).extend(members)
+        if not known and _is_internal(name, options):
+            self.scope.internal.add((kind, name))
 
     def _surface(self, keyword, options, data) -> None:
         kind = options.get("TYPE", "ELEMENT").upper()
-        if kind in ("ELEMENT", "NODE") and options.get("NAME"):
-            self.scope.surfaces[options["NAME"]] = (kind, [_words(line) for line in data])
-
-    def _join(self) -> None:
-        """One mesh of all instances; without any, of the parts."""
-        scopes = [("", self.outside)]
-        scopes += list(self.instances.items()) or list(self.parts.items())
-        scopes = [(name, scope) for name, scope in scopes if scope.nodes or scope.elements or scope is self.outside]
-        several = sum(bool(scope.elements) for _, scope in scopes) > 1
-        joined = {}
-        for name, scope in scopes:
-            joined[name.upper()] = _Joined(self, scope, "" if not several else name)
-        for piece in joined.values():
-            piece.take_sets(joined)
-        if several:  # numbers of one instance are those of another, too
-            self.mesh.numbers = np.arange(1, len(self.mesh.points) + 1)
+        kind = options.get("COMBINE", kind).upper()
+        if kind in ("ELEMENT", "NODE", "UNION", "INTERSECTION", "DIFFERENCE") and options.get("NAME"):
+            name = self._named(options["NAME"])
+            self.scope.surfaces[name] = (kind, [_fields(line) for line in data])
+            if _is_internal(name, options):
+                self.scope.internal.add(("surface", name))
 
 
-class _Joined:
-    """A scope in the mesh: where its nodes and elements are."""
+def _is_internal(name: str, options: dict) -> bool:
+    """Made by Abaqus/CAE or PrePoMax for what a person picked, and not named by one."""
+    return "INTERNAL" in options or _OF_PROGRAMS.match(name) is not None
 
-    def __init__(self, reader: _Reader, scope: Scope, prefix: str):
-        self.mesh, self.scope, self.prefix, self.reader = reader.mesh, scope, prefix, reader
-        mesh = reader.mesh
-        nodes = np.concatenate(scope.nodes) if scope.nodes else np.zeros((0, 4))
-        self.first_node, self.first_element = len(mesh.points), mesh.n_elements
-        numbers = nodes[:, 0].astype(np.int64)
-        self.nodes = Numbering(numbers, "node")
-        mesh.points = np.concatenate([mesh.points, _moved(nodes[:, 1:], scope)])
-        mesh.numbers = np.concatenate([mesh.numbers, numbers])
-        hint = f" (nodes and elements that *{sorted(reader.skipped)[0]} makes are not read)" if reader.skipped else ""
-        for shape, table in scope.elements:
-            try:
-                rows = self.nodes.rows(table[:, 1:], "an element") + self.first_node
-            except Fault as fault:
-                raise Fault(f"{fault}{hint}") from None
-            mesh.blocks.append(Block(shape, table[:, 0], rows))
-        self.elements = Numbering(np.concatenate([table[:, 0] for _, table in scope.elements]) if scope.elements else np.zeros(0, dtype=np.int64),
-                                  "element")
 
-    def _members(self, sets: dict, numbering: Numbering, first: int, name: str, joined: dict, depth: int = 0):
-        """Rows of a set."""
-        by_upper = {key.upper(): value for key, value in sets.items()}
-        numbers, rows = [], []
-        for member in by_upper.get(name.upper(), []):
-            if isinstance(member, int):
-                numbers.append(member)
-            elif isinstance(member, tuple):
-                other = joined.get(member[0].upper())
-                if other is not None:
-                    within = {"": [one for one in member[1]]}
-                    own = other.scope.node_sets if numbering is self.nodes else other.scope.element_sets
-                    rows.append(other._members({**own, **within}, other.nodes if numbering is self.nodes else other.elements,
-                                               other.first_node if numbering is self.nodes else other.first_element, "", joined, depth + 1))
-            elif depth < 20:
-                rows.append(self._members(sets, numbering, first, member, joined, depth + 1))
-        rows.append(numbering.rows(np.array(numbers, dtype=np.int64), f"the set '{name}'", forgiving=True) + first)
-        return np.unique(np.concatenate(rows))
+def _check_lengths(data: list, n: int, kind: str, began: int) -> None:
+    """Elements have so many numbers each, in one line or in several. Raises Fault."""
+    lengths = [line.count(",") + (not line.endswith(",")) for line in data]
+    if lengths.count(n) == len(lengths) and not _EMPTY.search("\n".join(data)):
+        return
+    so_far = 0
+    for line, length in zip(data, lengths):
+        so_far += length
+        if so_far > n or _EMPTY.search(line):
+            raise Fault(f"has elements of type {kind}, of {n - 1} nodes each: '{line[:60]}' (below line {began}) is none, or lacks the end of the one before it")
+        so_far %= n
+    if so_far:
+        raise Fault(f"has elements of type {kind}, of {n - 1} nodes each, that lack some: the last one has {max(so_far - 1, 0)} (is the file cut short?)")
 
-    def _named(self, name: str) -> str:
-        return f"{self.prefix}.{name}" if self.prefix else name
 
-    def take_sets(self, joined: dict) -> None:
-        for name in self.scope.node_sets:
-            rows = self._members(self.scope.node_sets, self.nodes, self.first_node, name, joined)
-            if name and len(rows):
-                self.mesh.node_sets[self._named(name)] = rows
-        for name in self.scope.element_sets:
-            rows = self._members(self.scope.element_sets, self.elements, self.first_element, name, joined)
-            if name and len(rows):
-                self.mesh.element_sets[self._named(name)] = rows
-        for name, (kind, lines) in self.scope.surfaces.items():
-            self._take_surface(name, kind, lines, joined)
+def _beside(name: str, given: str, line: int) -> str:
+    """The path of a file that another one names."""
+    for one in (given, given.replace("\\", "/")):
+        path = os.path.join(os.path.dirname(name), one)
+        if os.path.isfile(path):
+            return path
+    raise Fault(f"includes '{given}' (line {line}), which is not there")
 
-    def _take_surface(self, name: str, kind: str, lines: list, joined: dict) -> None:
-        for words in lines:
-            if not words:
-                continue
-            of_nodes = kind == "NODE"
-            target, given = self, words[0]
-            if "." in given and given.split(".")[0].upper() in joined:
-                target, given = joined[given.split(".")[0].upper()], given.split(".", 1)[1]
-            sets = target.scope.node_sets if of_nodes else target.scope.element_sets
-            sets = {**sets, "": [int(given) if given.isdigit() else given]}
-            rows = target._members(sets, target.nodes if of_nodes else target.elements, target.first_node if of_nodes else target.first_element, "", joined)
-            if of_nodes:
-                known = self.mesh.node_sets.get(self._named(name), np.zeros(0, dtype=np.int64))
-                self.mesh.node_sets[self._named(name)] = np.union1d(known, rows)
-            elif len(words) > 1 and re.fullmatch(r"[Ss]\d", words[1]):
-                self.mesh.add_faces(self._named(name), rows, np.full(len(rows), int(words[1][1:])), "abaqus")
-            elif len(words) > 1 and words[1].upper() in ("SPOS", "SNEG"):
-                known = self.mesh.element_sets.get(self._named(name), np.zeros(0, dtype=np.int64))
-                self.mesh.element_sets[self._named(name)] = np.union1d(known, rows)
-            else:
-                self.mesh.notes.append(f"the surface '{name}' is left out: it names no faces (S1, S2, ...).")
-                return
+
+def _goes_on(line: str) -> bool:
+    """Whether a line goes on with the options of the keyword before it, whose line ends with a comma; data has no such words."""
+    first = line.split(",")[0].strip()
+    return not line.startswith("*") and ("=" in first or first.upper() in ("GENERATE", "INTERNAL", "UNSORTED"))
 
 
 def _keyword(line: str):
     """"*Nset, nset=left, generate": its name without blanks, and its options."""
-    name, *rest = line[1:].split(",")
+    name, *rest = _fields(line[1:], keep_quotes=True)
     options = {}
     for piece in rest:
         key, _, value = piece.partition("=")
-        options[key.strip().upper()] = value.strip().strip('"')
+        options[key.replace(" ", "").strip().upper()] = value.strip().strip('"')
     return name.replace(" ", "").strip().upper(), options
 
 
-def _words(line: str) -> list:
-    return [word.strip().strip('"') for word in line.split(",") if word.strip()]
+def _fields(line: str, keep_quotes: bool = False) -> list:
+    """What stands between commas, also nothing; a comma at the end of a line ends nothing."""
+    pieces = line.split(",") if '"' not in line else _OUTSIDE_QUOTES.findall(line)
+    if pieces and not pieces[-1].strip():
+        pieces.pop()
+    return [piece.strip() if keep_quotes else piece.strip().strip('"') for piece in pieces]
 
 
-def _numbers(data: list, kind) -> np.ndarray:
-    text = " ".join(data).replace(",", " ")
+def _real(word: str) -> float:
+    return float(word.upper().replace("D", "E")) if word else 0.0
+
+
+def _numbers(text: str, kind) -> np.ndarray:
+    text = text.replace(",", " ")
     if kind is float:
         text = text.replace("D", "E").replace("d", "e")
     return np.array(text.split(), dtype=kind)
-
-
-def _moved(points: np.ndarray, scope: Scope) -> np.ndarray:
-    """Of an instance that is shifted, and then turned about the axis through two points by an angle in degrees."""
-    if scope.shift is not None and len(scope.shift):
-        points = points + np.pad(scope.shift, (0, 3 - len(scope.shift)))
-    if scope.matrix is None:
-        return points
-    a, b, angle = np.array(scope.matrix[:3]), np.array(scope.matrix[3:6]), np.radians(scope.matrix[6])
-    axis = (b - a) / max(np.linalg.norm(b - a), 1e-300)
-    way = points - a
-    return a + way * np.cos(angle) + np.cross(axis, way) * np.sin(angle) + np.outer(way @ axis, axis) * (1 - np.cos(angle))

@@ -35,17 +35,19 @@ def read(name: str) -> Mesh:
     return mesh
 
 
-
 def write(mesh: Mesh, dimension: int, out: str) -> None:
     """The elements of this dimension, and of one less as far as sets name them."""
     groups = Groups(mesh, dimension)
-    numbers = mesh.numbers if len(mesh.numbers) and mesh.numbers.min() > 0 and mesh.numbers.max() < 2 ** 31 - 1 else np.arange(1, len(mesh.points) + 1)
+    numbers = mesh.numbers
+    if not len(numbers) or numbers.min() <= 0 or numbers.max() >= 2 ** 31 - 1 or len(np.unique(numbers)) < len(numbers):
+        numbers = np.arange(1, len(mesh.points) + 1)
     with open(out, "w", encoding="utf-8", errors="replace") as file:
         file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")
         if groups.names:
             file.write(f"$PhysicalNames\n{len(groups.names)}\n")
             for (of, name), number in groups.names.items():
-                file.write(f'{of} {number} "{" ".join(name.split())}"\n')
+                shown = " ".join(name.replace('"', "'").split())  # names with double quotes could not be written in scenes
+                file.write(f'{of} {number} "{shown}"\n')
             file.write("$EndPhysicalNames\n")
         file.write(f"$Nodes\n{len(numbers)}\n")
         for start in range(0, len(numbers), 100_000):
@@ -61,8 +63,7 @@ def write(mesh: Mesh, dimension: int, out: str) -> None:
 
 def _elements(mesh: Mesh, groups: Groups, dimension: int, node_numbers) -> list:
     """Lines of elements: number, kind, 2, group, group, nodes. Cells keep their numbers, if they can."""
-    kept = [block for block in mesh.blocks
-            if block.shape.dimension == dimension or (block.shape.dimension == dimension - 1 and (groups.cells[id(block)] > 0).any())]
+    kept = [block for block in mesh.blocks if block.shape.dimension == dimension]
     all_numbers = np.concatenate([block.numbers for block in kept]) if kept else np.zeros(0, dtype=np.int64)
     unique = len(np.unique(all_numbers)) == len(all_numbers) and (not len(all_numbers) or 0 < all_numbers.min() <= all_numbers.max() < 2 ** 30)
     last, lists = int(all_numbers.max()) if unique and len(all_numbers) else 0, []
@@ -73,7 +74,7 @@ def _elements(mesh: Mesh, groups: Groups, dimension: int, node_numbers) -> list:
         rows = np.empty((len(group), 5 + block.shape.corners), dtype=np.int64)
         rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3], rows[:, 4] = own, block.shape.gmsh, 2, group, group
         rows[:, 5:] = node_numbers[block.nodes]
-        lists.append(rows if block.shape.dimension == dimension else rows[group > 0])
+        lists.append(rows)
     for shape in SIDES.values():
         sides = [(corners, group) for corners, group in groups.sides if len(corners) == shape.corners]
         if sides and shape.dimension == dimension - 1:

@@ -22,6 +22,11 @@ class Shape:
     abaqus: tuple = ()
     exodus: tuple = ()
 
+    @property
+    def shell(self) -> tuple:
+        """Of a shell: its faces in front and behind, and its edges."""
+        return (tuple(range(self.corners)),) * 2 + self.abaqus if self.dimension == 2 else ()
+
 
 POINT = Shape("point", 0, 1, 15)
 LINE = Shape("line", 1, 2, 1)
@@ -36,7 +41,7 @@ WEDGE = Shape("wedge", 3, 6, 6, ((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2
               ((0, 1, 4, 3), (1, 2, 5, 4), (0, 3, 5, 2), (0, 2, 1), (3, 4, 5)))
 HEXAHEDRON = Shape("hexahedron", 3, 8, 5, ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
                    ((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 4, 7, 3), (0, 3, 2, 1), (4, 5, 6, 7)))
-SIDES = {2: LINE, 3: TRIANGLE, 4: QUADRILATERAL}
+SIDES = {1: POINT, 2: LINE, 3: TRIANGLE, 4: QUADRILATERAL}
 
 
 @dataclass
@@ -46,6 +51,7 @@ class Block:
     shape: Shape
     numbers: np.ndarray
     nodes: np.ndarray
+    is_shell: bool = False  # sides are numbered as Shape.shell
 
 
 @dataclass
@@ -58,6 +64,10 @@ class Mesh:
     node_sets: dict = field(default_factory=dict)  # rows of nodes, by name
     element_sets: dict = field(default_factory=dict)  # counted through all blocks
     face_sets: dict = field(default_factory=dict)  # lists of tuples of corners
+    shell_sets: dict = field(default_factory=dict)  # elements of which a set has the face
+    free_sets: dict = field(default_factory=dict)  # elements of which a set has the faces around the body
+    regions: dict = field(default_factory=dict)  # sets of elements that the file gives a material, and that
+    ids: dict = field(default_factory=dict)  # numbers that the file gives to sets, by whether they are of elements, and name
     notes: list = field(default_factory=list)
     curved: int = 0  # elements whose middle nodes are left out
 
@@ -69,19 +79,36 @@ class Mesh:
         return max((block.shape.dimension for block in self.blocks), default=0)
 
     def add_faces(self, name: str, elements, sides, numbering: str) -> None:
-        """Faces of elements, given by the element and the number of its face from 1, as `abaqus` or `exodus` numbers them."""
+        """Faces of elements, given by the element and the number of its face from 1, as `abaqus`, `exodus` or `shell` numbers them; shells have
+        their own numbers with all of them."""
         elements, sides = np.asarray(elements, dtype=np.int64), np.asarray(sides, dtype=np.int64)
         first, faces = 0, self.face_sets.setdefault(name, [])
         for block in self.blocks:
-            table = getattr(block.shape, numbering)
+            table = getattr(block.shape, "shell" if block.is_shell else numbering)
             here = (elements >= first) & (elements < first + len(block.numbers))
             for side in np.unique(sides[here]):
                 if block.shape.dimension > 1 and not 1 <= side <= len(table):
-                    raise Fault(f"names face {side} of a {block.shape.name} in '{name}', which has {len(table)}")
-                if table:
-                    rows = elements[here & (sides == side)] - first
-                    faces += [tuple(face) for face in block.nodes[np.ix_(rows, table[side - 1])].tolist()]
+                    raise Fault(f"names face {side} of a {block.shape.name} in '{name}', which has {len(table) or 'none of that kind'}")
+                rows = elements[here & (sides == side)]
+                if table and len(table[side - 1]) == block.shape.corners and block.shape.dimension == 2:
+                    self.shell_sets[name] = np.union1d(self.shell_sets.get(name, np.zeros(0, dtype=np.int64)), rows)
+                elif table:
+                    faces += [tuple(face) for face in block.nodes[np.ix_(rows - first, table[side - 1])].tolist()]
             first += len(block.numbers)
+
+
+def text_of(data: bytes) -> str:
+    """UTF-8, with or without its mark at the beginning, or else Latin 1."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def lines_of(name: str) -> list:
+    """The lines of a text file, whatever ends them."""
+    with open(name, "rb") as file:
+        return text_of(file.read()).replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 class Numbering:
@@ -95,17 +122,19 @@ class Numbering:
         if len(twice):
             raise Fault(f"gives {what} {self._sorted[twice[0]]} twice")
 
-    def rows(self, numbers, where: str, forgiving: bool = False) -> np.ndarray:
-        """Raises Fault where one is not there, unless those are left out."""
+    def known(self, numbers) -> tuple:
+        """Rows of the numbers that are there, and the other numbers."""
         numbers = np.asarray(numbers)
         if len(self._sorted) == 0:
-            if forgiving or numbers.size == 0:
-                return np.zeros(0, dtype=np.int64)
-            raise Fault(f"has no {self._what} {numbers.flat[0]}, which {where} names")
+            return np.zeros(0, dtype=np.int64), numbers
         at = np.minimum(np.searchsorted(self._sorted, numbers), len(self._sorted) - 1)
-        missing = self._sorted[at] != numbers
-        if forgiving:
-            return self._order[at[~missing]]
-        if missing.any():
-            raise Fault(f"has no {self._what} {numbers[missing].flat[0]}, which {where} names")
-        return self._order[at]
+        is_there = self._sorted[at] == numbers
+        return self._order[at[is_there]], numbers[~is_there]
+
+    def rows(self, numbers, where: str) -> np.ndarray:
+        """Raises Fault where one is not there."""
+        numbers = np.asarray(numbers)
+        rows, missing = self.known(numbers)
+        if len(missing):
+            raise Fault(f"has no {self._what} {missing.flat[0]}, which {where} names")
+        return rows.reshape(numbers.shape)

@@ -4,26 +4,25 @@
 
 import numpy as np
 
-from .mesh import Block, Fault, HEXAHEDRON, LINE, Mesh, Numbering, QUADRILATERAL, TETRAHEDRON, TRIANGLE, WEDGE
+from .mesh import Block, Fault, HEXAHEDRON, LINE, Mesh, Numbering, PYRAMID, QUADRILATERAL, TETRAHEDRON, TRIANGLE, WEDGE, lines_of
 
 _ALL = slice(None)
-# By descriptor: the shape, its number of nodes, where the corners are among them.
-_KINDS = {kind: (LINE, 2, _ALL) for kind in (11, 21, 22, 23)}
-_KINDS.update({kind: (LINE, 3, [0, 2]) for kind in (24,)})
-_KINDS.update({kind: (TRIANGLE, 3, _ALL) for kind in (41, 51, 61, 74, 81, 91)})
-_KINDS.update({kind: (TRIANGLE, 6, [0, 2, 4]) for kind in (42, 52, 62, 72, 82, 92)})
-_KINDS.update({kind: (QUADRILATERAL, 4, _ALL) for kind in (44, 54, 64, 71, 84, 94)})
-_KINDS.update({kind: (QUADRILATERAL, 8, [0, 2, 4, 6]) for kind in (45, 55, 65, 75, 85, 95)})
-_KINDS.update({111: (TETRAHEDRON, 4, _ALL), 118: (TETRAHEDRON, 10, [0, 2, 4, 9]), 112: (WEDGE, 6, _ALL), 113: (WEDGE, 15, [0, 2, 4, 9, 11, 13]),
-               115: (HEXAHEDRON, 8, _ALL), 116: (HEXAHEDRON, 20, [0, 2, 4, 6, 12, 14, 16, 18])})
+# By descriptor and number of nodes: the shape, where the corners are among the nodes.
+_KINDS = {(kind, 2): (LINE, _ALL) for kind in (11, 21, 22, 23, 24)}
+_KINDS.update({(kind, 3): (LINE, [0, 2]) for kind in (11, 21, 22, 23, 24)})
+_KINDS.update({(kind, 3): (TRIANGLE, _ALL) for kind in (41, 51, 61, 74, 81, 91)})
+_KINDS.update({(kind, 6): (TRIANGLE, [0, 2, 4]) for kind in (42, 52, 62, 72, 82, 92)})
+_KINDS.update({(kind, 4): (QUADRILATERAL, _ALL) for kind in (44, 54, 64, 71, 84, 94)})
+_KINDS.update({(kind, 8): (QUADRILATERAL, [0, 2, 4, 6]) for kind in (45, 55, 65, 75, 85, 95)})
+_KINDS.update({(111, 4): (TETRAHEDRON, _ALL), (118, 10): (TETRAHEDRON, [0, 2, 4, 9]), (112, 6): (WEDGE, _ALL), (113, 15): (WEDGE, [0, 2, 4, 9, 11, 13]),
+               (115, 8): (HEXAHEDRON, _ALL), (116, 20): (HEXAHEDRON, [0, 2, 4, 6, 12, 14, 16, 18]), (312, 5): (PYRAMID, _ALL)})
 _BEAMS = (11, 21, 22, 23, 24)
-_GROUPS = ("2467", "2477", "2452", "2435", "2432", "2430", "2429", "2428")
+_GROUPS = {"2467": 4, "2477": 4, "2452": 4, "2435": 4, "2432": 2, "2430": 2, "2429": 2}  # numbers of each member: its kind, its number, ...
 
 
 def read(name: str) -> Mesh:
     """Raises Fault."""
-    with open(name, encoding="latin-1") as file:
-        lines = file.read().splitlines()
+    lines = lines_of(name)
     reader, at, any_set = _Reader(), 0, False
     try:
         while at < len(lines):
@@ -48,42 +47,53 @@ def read(name: str) -> Mesh:
 class _Reader:
     def __init__(self):
         self.nodes, self.points, self.elements, self.groups, self.unknown = [], [], {}, [], {}
+        self.notes, self.left_out = [], []
 
     def take(self, dataset: str, lines: list) -> None:
         if dataset in ("2411", "781"):
             for k in range(0, len(lines), 2):
                 self.nodes.append(int(lines[k].split()[0]))
-                self.points.append([float(word) for word in lines[k + 1].replace("D", "E").replace("d", "e").split()[:3]])
-        elif dataset == "2412":
-            self._take_elements(lines)
+                self.points.append([_real(word) for word in lines[k + 1].split()[:3]])
+        elif dataset == "15":
+            for words in (line.split() for line in lines):
+                self.nodes.append(int(words[0]))
+                self.points.append([_real(word) for word in words[4:7]])
+        elif dataset in ("2412", "780"):
+            self._take_elements(lines, dataset == "780")
+        elif dataset in ("71", "2428", "2417", "752"):
+            raise Fault(f"has the dataset {dataset}, an old kind of elements or groups, which is not read: save it by a program of our time")
         elif dataset in _GROUPS:
-            self._take_groups(lines)
+            self._take_groups(lines, _GROUPS[dataset])
+        elif dataset == "164" and len(lines) > 1 and abs(_real(lines[1].split()[0]) - 1) > 1e-9:
+            self.notes.append("the file has units of its own (dataset 164): coordinates are taken as they stand there.")
 
-    def _take_elements(self, lines: list) -> None:
+    def _take_elements(self, lines: list, is_old: bool) -> None:
         at = 0
         while at < len(lines):
-            number, kind, *_, n = (int(word) for word in lines[at].split()[:6])
+            head = [int(word) for word in lines[at].split()]
+            number, kind, n = head[0], head[1], head[7 if is_old else 5]
             at += 2 if kind in _BEAMS else 1
             words = []
             while len(words) < n:
                 words += lines[at].split()
                 at += 1
-            if kind in _KINDS and _KINDS[kind][1] == n:
-                self.elements.setdefault(kind, []).append((number, [int(word) for word in words[:n]]))
+            if (kind, n) in _KINDS:
+                self.elements.setdefault((kind, n), []).append((number, [int(word) for word in words[:n]]))
             else:
                 self.unknown[kind] = self.unknown.get(kind, 0) + 1
+                self.left_out.append(number)
 
-    def _take_groups(self, lines: list) -> None:
+    def _take_groups(self, lines: list, width: int) -> None:
         at = 0
         while at < len(lines):
             head = [int(word) for word in lines[at].split()]
             name, n = lines[at + 1].strip(), head[7]
             at += 2
             words = []
-            while len(words) < 4 * n:
+            while len(words) < width * n:
                 words += lines[at].split()
                 at += 1
-            entries = np.array(words[:4 * n], dtype=np.int64).reshape(-1, 4)
+            entries = np.array(words[:width * n], dtype=np.int64).reshape(-1, width)
             self.groups.append((name or f"group_{head[0]}", entries[entries[:, 0] == 7, 1], entries[entries[:, 0] == 8, 1]))
 
     def mesh(self) -> Mesh:
@@ -91,18 +101,26 @@ class _Reader:
         for row, point in zip(mesh.points, self.points):
             row[:len(point)] = point
         nodes = Numbering(mesh.numbers, "node")
-        for kind, rows in self.elements.items():
-            shape, n, corners = _KINDS[kind]
+        for (kind, n), rows in self.elements.items():
+            shape, corners = _KINDS[kind, n]
             table = np.array([row[1] for row in rows], dtype=np.int64)[:, corners]
             mesh.curved += len(rows) if n > shape.corners else 0
             mesh.blocks.append(Block(shape, np.array([row[0] for row in rows], dtype=np.int64), nodes.rows(table, "an element")))
+        for kind, n in self.unknown.items():
+            self.notes.append(f"{n} elements of the descriptor {kind} are left out, which have no shape that is read.")
+        mesh.notes = self.notes
         if mesh.blocks:
             elements = Numbering(np.concatenate([block.numbers for block in mesh.blocks]), "element")
             for name, of_nodes, of_elements in self.groups:
-                if len(of_nodes):
-                    mesh.node_sets[name] = nodes.rows(of_nodes, f"'{name}'", forgiving=True)
-                if len(of_elements):
-                    mesh.element_sets[name] = elements.rows(of_elements, f"'{name}'", forgiving=True)
-        for kind, n in self.unknown.items():
-            mesh.notes.append(f"{n} elements of the descriptor {kind} are left out, which have no shape that is read.")
+                for numbering, members, sets in ((nodes, of_nodes, mesh.node_sets), (elements, of_elements, mesh.element_sets)):
+                    rows, missing = numbering.known(members)
+                    lost = missing[~np.isin(missing, self.left_out)] if sets is mesh.element_sets else missing
+                    if len(lost):
+                        mesh.notes.append(f"'{name}' names {len(lost)} nodes or elements that are not there, the first is {lost[0]}.")
+                    if len(rows):
+                        sets[name] = np.union1d(sets.get(name, np.zeros(0, dtype=np.int64)), rows)
         return mesh
+
+
+def _real(word: str) -> float:
+    return float(word.upper().replace("D", "E"))

@@ -4,15 +4,19 @@
 
 import contextlib
 import io
+import re
 from pathlib import Path
 
 import numpy as np
 
 from .mesh import Block, Fault, HEXAHEDRON, LINE, Mesh, POINT, PYRAMID, QUADRILATERAL, TETRAHEDRON, TRIANGLE, WEDGE
 
-_SHAPES = (("vertex", POINT), ("line", LINE), ("triangle", TRIANGLE), ("quad", QUADRILATERAL), ("tetra", TETRAHEDRON), ("pyramid", PYRAMID), ("wedge", WEDGE),
-           ("hexahedron", HEXAHEDRON))
+_KIND = re.compile(r"([a-z]+)\d*")
+_SHAPES = dict((("vertex", POINT), ("line", LINE), ("triangle", TRIANGLE), ("quad", QUADRILATERAL), ("tetra", TETRAHEDRON), ("pyramid", PYRAMID), ("wedge", WEDGE),
+                ("hexahedron", HEXAHEDRON)))
 _WORDS = ("physical", "region", "material", "group", "block", "phase", "tag", "label", "marker", "ref", "domain", "zone", "part", "entityid", "id")
+_NO_REGIONS = ("partition", "rank", "proc", "original", "global")  # numbers of processes, and of cells
+_FEW_CELLS = 20  # of which each may be a region of its own
 _MOST_GROUPS = 1000
 FORMATS = "Gmsh (.msh), Abaqus and CalculiX (.inp), Exodus (.e, .exo, .g), UNV (.unv) and, with meshio, VTK (.vtk, .vtu), XDMF (.xdmf) and others"
 
@@ -42,9 +46,14 @@ def _taken(given) -> Mesh:
     points = np.asarray(given.points, dtype=float)
     mesh = Mesh(points=np.zeros((len(points), 3)), numbers=np.arange(1, len(points) + 1))
     mesh.points[:, :points.shape[1]] = points[:, :3]
-    ids, kept, first = _group_numbers(given), {}, 0
+    ids, tags, kept, first = None, getattr(given, "cell_tags", None) or {}, {}, 0
+    if not tags:
+        what, ids = _group_numbers(given)
+        if ids is not None:
+            mesh.notes.append(f"regions and sides are those of the numbers '{what}'; 0 is none.")
     for k, block in enumerate(given.cells):
-        shape = next((one for begin, one in _SHAPES if block.type.startswith(begin)), None)
+        match = _KIND.fullmatch(block.type)
+        shape = _SHAPES.get(match[1]) if match else None
         nodes = np.asarray(block.data)
         if shape is None or not len(nodes) or nodes.ndim != 2:
             if shape is None:
@@ -62,7 +71,15 @@ def _taken(given) -> Mesh:
                     label = str(int(number))
                     known = mesh.element_sets.get(label, np.zeros(0, dtype=np.int64))
                     mesh.element_sets[label] = np.concatenate([known, rows[np.asarray(ids[k]) == number]])
+        for number, names in tags.items():  # of MED: families, each in several groups
+            family = rows[np.asarray(given.cell_data["cell_tags"][k]).ravel() == number]
+            for name in names if len(family) else ():
+                mesh.element_sets[str(name)] = np.union1d(mesh.element_sets.get(str(name), np.zeros(0, dtype=np.int64)), family)
         first += len(nodes)
+    for number, names in (getattr(given, "point_tags", None) or {}).items():
+        family = np.flatnonzero(np.asarray(given.point_data["point_tags"]).ravel() == number)
+        for name in names if len(family) else ():
+            mesh.node_sets[str(name)] = np.union1d(mesh.node_sets.get(str(name), np.zeros(0, dtype=np.int64)), family)
     for name, nodes in (getattr(given, "point_sets", None) or {}).items():
         mesh.node_sets[str(name)] = np.asarray(nodes, dtype=np.int64)
     for name, pieces in (getattr(given, "cell_sets", None) or {}).items():
@@ -73,13 +90,17 @@ def _taken(given) -> Mesh:
 
 
 def _group_numbers(given):
-    """The array of whole numbers whose name says most that it is one of regions."""
+    """The array of whole numbers whose name says most that it is one of regions, and its name."""
     best = None
     for name, arrays in (given.cell_data or {}).items():
         flat = [np.asarray(array) for array in arrays]
         flat = [array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array for array in flat]
         whole = all(array.ndim == 1 and np.all(np.isfinite(array)) and np.all(array == np.round(array)) for array in flat)
         rank = next((k for k, word in enumerate(_WORDS) if word in name.lower()), None)
-        if whole and rank is not None and (best is None or rank < best[0]) and len(np.unique(np.concatenate(flat))) <= _MOST_GROUPS:
-            best = (rank, flat)
-    return best[1] if best else None
+        if not whole or rank is None or any(word in name.lower() for word in _NO_REGIONS):
+            continue
+        numbers = np.concatenate(flat)
+        n = len(np.unique(numbers))
+        if n <= _MOST_GROUPS and (n < len(numbers) or n <= _FEW_CELLS) and (best is None or rank < best[0]):
+            best = (rank, name, flat)
+    return (best[1], best[2]) if best else (None, None)
