@@ -123,10 +123,13 @@ namespace PeriDeal
   TEST_F(SurfaceTransfers, slopes)
   {
     HeatParameters<2> body;
-    auto             &sides = body.boundary_conditions;
-    const Expression  of_T("0.2 + 1e-4*T + 0*t", "", "", true),
-      flux("1e3 - exp(T/100)", "", "", true), roots("1e3*sqrt(T)", "", "", true);
-    sides.absolute_zero = -20.;
+    auto             &sides   = body.boundary_conditions;
+    const auto        formula = [](const std::string &text) {
+      return Expression(text, "", "x, y, z, t, T", true);
+    };
+    const Expression of_T = formula("0.2 + 1e-4*T"), flux = formula("1e3 - exp(T/100)"),
+                     roots = formula("1e3*sqrt(T)");
+    sides.absolute_zero    = -20.;
     sides.let_in("Radiation", 0, {of_T, 400.});
     sides.let_in("Flux", 1, {flux});
     sides.let_in("Convection", 2, {of_T, roots});
