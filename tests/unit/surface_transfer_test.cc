@@ -144,8 +144,8 @@ namespace PeriDeal
           EXPECT_NEAR(side.slope(p, 0., T, false), std::max(0., -growth), 1e-6 * std::abs(growth));
         }
     const double sigma = 5.670374419e-8;
-    EXPECT_NEAR(sides.transfers[0].slope(p, 0., -20., true), // of half of 420 K
-                0.198 * 4. * sigma * std::pow(210., 3) - 1e-4 * sigma * std::pow(420., 4),
+    EXPECT_NEAR(sides.transfers[0].slope(p, 0., -20., true), // of the chord
+                0.198 * sigma * std::pow(420., 3) - 1e-4 * sigma * std::pow(420., 4),
                 1e-9);
     EXPECT_EQ(sides.transfers[0].slope(p, 0., -20., false), 0.);
     EXPECT_EQ(roots.slope(p, 0., 0.), roots.value(p, 0., 1e-5) / 1e-5); // on one side
