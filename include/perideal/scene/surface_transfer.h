@@ -102,7 +102,7 @@ namespace PeriDeal
     /**
      * The h of a line f + h (a - u) to be taken for q at places with values near u: -dq/du, but not
      * less than 0, where q grows with u. A side that radiates takes up next to nothing more or less
-     * per degree where it is cold: of a guess of a steady state that is colder than the surroundings
+     * per degree where it is cold: of guesses of steady states, colder than the surroundings,
      * it is that of the chord to them, and of one at the absolute zero, that of 1 K.
      */
     template <int dim>
