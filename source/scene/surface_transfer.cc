@@ -176,7 +176,7 @@ namespace PeriDeal
   double SurfaceTransfer::slope(const Point<dim> &p,
                                 const double      t,
                                 const double      u,
-                                const bool        steady) const
+                                const bool        is_guess) const
   {
     if (!is_curved)
       return coefficient.value(p);
@@ -187,9 +187,14 @@ namespace PeriDeal
     if (radiates)
       {
         const double outside = surroundings.value(p, t) - absolute_zero, here = u - absolute_zero,
-                     warm = steady ? std::max({std::abs(here), 0.5 * outside, 1.}) : std::abs(here);
-        growth += emissivity.slope(p, t, u) * black_flux(p, t, u) -
-                  emissivity.value(p, t, u) * 4. * radiation(warm) / (warm > 0. ? warm : 1.);
+                     warm      = std::abs(here);
+        const double steepness = is_guess && here < outside ?
+                                   black_flux(p, t, u) / (outside - here) :
+                                 is_guess && warm < 1. ? 4. * radiation(1.) :
+                                 warm > 0.             ? 4. * radiation(warm) / warm :
+                                                         0.;
+        growth +=
+          emissivity.slope(p, t, u) * black_flux(p, t, u) - emissivity.value(p, t, u) * steepness;
       }
     return std::max(0., -growth);
   }

@@ -71,6 +71,9 @@ def slab():
         "Celsius by number": ({"Units/Absolute zero": "-273.15", BC + "Radiation": "right: 0.8, 20", BC + "Dirichlet": "left: 726.85"},
                               surface(726.85, 200, 0.8, 20, zero=-273.15)),
         "heated by a furnace": ({BC + "Radiation": "right: 0.9, 1500", BC + "Dirichlet": "left: 300"}, surface(300, 200, 0.9, 1500)),
+        "heated, k of a table that ends at the furnace's temperature": (
+            {BC + "Radiation": "right: 0.9, 1500", BC + "Dirichlet": "left: 300", "Material/Conductivity": "k(T)",
+             "Formulas/Tables": "k: " + write_file("k.csv", "T,k\n299,2\n1500,2\n")}, surface(300, 20, 0.9, 1500)),
         "with convection and flux": ({BC + "Convection": "right: 25, 280", BC + "Flux": "right: 1e4"}, surface(1000, 200, 0.8, 293.15, 25, 280, 1e4)),
         "on all of a part": ({BC + "Parts": "face: right if y < 1", BC + "Radiation": "face: 0.8, 293.15"}, surface(1000, 200, 0.8, 293.15)),
         "emissivity of T": ({BC + "Radiation": "right: 0.3 + 5e-4*T, 293.15"},
@@ -92,7 +95,7 @@ def slab():
             if what == "radiation":
                 table.add(f"{model}: heat", flow[side], -200 * (1000 - expected) * 0.05, relative=1e-10)
             check_less(abs(run.model(model)["heat balance"]["imbalance"]), 1e-8 * abs(flow[side]) + 1e-8, f"{what}, {model}: imbalance")
-            check_less(run.model(model)["iterations"], 1300, f"{what}, {model}: iterations")
+            check_less(run.model(model)["iterations"], 1400 if "vacuum" in what else 195, f"{what}, {model}: iterations")
     table.show()
 
 

@@ -123,10 +123,13 @@ namespace PeriDeal
   TEST_F(SurfaceTransfers, slopes)
   {
     HeatParameters<2> body;
-    auto             &sides = body.boundary_conditions;
-    const Expression  of_T("0.2 + 1e-4*T + 0*t", "", "", true),
-      flux("1e3 - exp(T/100)", "", "", true), roots("1e3*sqrt(T)", "", "", true);
-    sides.absolute_zero = -20.;
+    auto             &sides   = body.boundary_conditions;
+    const auto        formula = [](const std::string &text) {
+      return Expression(text, "", "x, y, z, t, T", true);
+    };
+    const Expression of_T = formula("0.2 + 1e-4*T"), flux = formula("1e3 - exp(T/100)"),
+                     roots = formula("1e3*sqrt(T)");
+    sides.absolute_zero    = -20.;
     sides.let_in("Radiation", 0, {of_T, 400.});
     sides.let_in("Flux", 1, {flux});
     sides.let_in("Convection", 2, {of_T, roots});
@@ -141,8 +144,8 @@ namespace PeriDeal
           EXPECT_NEAR(side.slope(p, 0., T, false), std::max(0., -growth), 1e-6 * std::abs(growth));
         }
     const double sigma = 5.670374419e-8;
-    EXPECT_NEAR(sides.transfers[0].slope(p, 0., -20., true), // of half of 420 K
-                0.198 * 4. * sigma * std::pow(210., 3) - 1e-4 * sigma * std::pow(420., 4),
+    EXPECT_NEAR(sides.transfers[0].slope(p, 0., -20., true), // of the chord
+                0.198 * sigma * std::pow(420., 3) - 1e-4 * sigma * std::pow(420., 4),
                 1e-9);
     EXPECT_EQ(sides.transfers[0].slope(p, 0., -20., false), 0.);
     EXPECT_EQ(roots.slope(p, 0., 0.), roots.value(p, 0., 1e-5) / 1e-5); // on one side

@@ -102,14 +102,14 @@ namespace PeriDeal
     /**
      * The h of a line f + h (a - u) to be taken for q at places with values near u: -dq/du, but not
      * less than 0, where q grows with u. A side that radiates takes up next to nothing more or less
-     * per degree where it is cold: in search of a steady state it is taken for half as warm as its
-     * surroundings at least, and for 1 K, so that the first guess may be the absolute zero.
+     * per degree where it is cold: of guesses of steady states, colder than the surroundings,
+     * it is that of the chord to them, and of one at the absolute zero, that of 1 K.
      */
     template <int dim>
     double slope(const dealii::Point<dim> &p,
                  const double              t,
                  const double              u,
-                 const bool                steady) const;
+                 const bool                is_guess) const;
 
     /**
      * What is wrong with what the formulas give at a place with the value u, which radiation takes

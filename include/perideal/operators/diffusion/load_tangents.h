@@ -43,16 +43,17 @@ namespace PeriDeal
 
     /**
      * Take those at these temperatures, which have been through distribute(u, t).
-     * @param steady in search of a steady state
+     * @param steady in search of a steady state: the first ones may be guesses
      *
      * Collective.
      */
     void take(const Vector &u, const double t, const bool steady)
     {
-      taken = u;
+      constexpr unsigned int guesses = 5; // the start comes twice
+      taken                          = u;
       taken.update_ghost_values();
-      time      = t;
-      is_steady = steady;
+      time     = t;
+      is_guess = steady && ++n_taken <= guesses;
     }
 
     bool taken_at_all() const
@@ -74,7 +75,7 @@ namespace PeriDeal
 
     double slope(const SurfaceTransfer &transfer, const dealii::Point<dim> &p, const double T) const
     {
-      return transfer.slope(p, time, T, is_steady);
+      return transfer.slope(p, time, T, is_guess);
     }
 
     /** q(T) + h T of the source at time t. */
@@ -121,7 +122,8 @@ namespace PeriDeal
     const Expression &source;
     const bool        is_any;
     Vector            taken;
-    double            time      = 0.;
-    bool              is_steady = false;
+    double            time     = 0.;
+    unsigned int      n_taken  = 0;
+    bool              is_guess = false;
   };
 } // namespace PeriDeal
