@@ -83,6 +83,9 @@ def plate():
             table.add(f"{quantity}, {ranks} processes", runs[ranks].total(quantity, PD), runs[1].total(quantity, PD), relative=1e-7)
     coarse = {**QUIET, "Domain/Cells": "20, 20", "Time/Time step": "0.2"}
     newton, gradients = (run_scene(PLATE, {**coarse, "Elasticity/Solver": solver}) for solver in ("newton", "conjugate gradients"))
+    n_steps, n_newton = newton.model(PD)["steps"], newton.model(PD)["Newton iterations"]
+    check(n_steps <= n_newton <= 8 * n_steps and n_newton < newton.model(PD)["iterations"], f"{n_newton} iterations of Newton's method in {n_steps} steps")
+    check("Newton iterations" not in gradients.model(PD), "iterations of a method that is another")
     for quantity in quantities:
         table.add(f"{quantity}, by conjugate gradients", gradients.total(quantity, PD), newton.total(quantity, PD), relative=1e-6)
     table.show()

@@ -55,16 +55,16 @@ Node spacing = 0.3 & Upper corner = 1, 1.41421356 => Node spacing | give 'Cells'
     const std::string moduli =
       "subsection Material\nset Young modulus = 1\nset Poisson ratio = 0.3\nend\n";
     const std::string elastic = "set Physics = elasticity\n", place = "x, y, z", all = "x, y, z, t",
-                      material = "x, y, z, T",
-                      warm     = "\nend\nsubsection Elasticity\nset Temperature change = 1";
+                      material = "x, y, z, T", loads = "x, y, z, t, T",
+                      warm = "\nend\nsubsection Elasticity\nset Temperature change = 1";
     const std::vector<Case>
       of_heat       = {{"Material", "Conductivity = 1 + #", material},
                        {"Material", "Density = 1 + #", material},
-                       {"Initial and source", "Source = #", all},
+                       {"Initial and source", "Source = #", loads},
                        {"Boundary conditions", "Dirichlet = left: #", all},
-                       {"Boundary conditions", "Flux = left: #", all},
-                       {"Boundary conditions", "Convection = left: 1 + #, 0", place},
-                       {"Boundary conditions", "Convection = left: 1, #", all},
+                       {"Boundary conditions", "Flux = left: #", loads},
+                       {"Boundary conditions", "Convection = left: 1 + #, 0", material},
+                       {"Boundary conditions", "Convection = left: 1, #", loads},
                        {"Boundary conditions", "Parts = a: left if 1 + #", place},
                        {"Cracks", "Segments = 0.2,0.5;0.8,0.5\nset Transmission = 0.5*#", "t"}},
       of_solids     = {{"Elasticity", "Temperature change = #", place},

@@ -242,7 +242,7 @@ namespace PeriDeal
                         entry.name == "Symmetry" || entry.name == "Parts" ||
                         entry.name == "Regions" || entry.name == "Interfaces" ||
                         entry.name == "Image colors" || entry.name == "Constants" ||
-                        entry.name == "Tables" || !entry.unit.empty())
+                        entry.name == "Tables" || entry.name == "Quantities" || !entry.unit.empty())
               << entry.name;
           }
       }
