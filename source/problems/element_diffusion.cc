@@ -498,24 +498,18 @@ namespace PeriDeal
         nodes.volumes.assign(volumes.begin(), volumes.begin() + volumes.locally_owned_size());
         nodes.positions.resize(nodes.volumes.size());
         for_each_node([&](const unsigned int i, const Point<dim> &p) { nodes.positions[i] = p; },
-                      volumes);
+                      &volumes);
       }
 
-      void for_each_node(
-        const std::function<void(const unsigned int, const Point<dim> &)> &visit) const
-      {
-        for_each_node(visit, solution);
-      }
-
-      /** Call visit(local index, position) for each owned dof of a vector. */
+      /** Call visit(local index, position) for each owned dof of a vector (none: the solution). */
       void for_each_node(const std::function<void(const unsigned int, const Point<dim> &)> &visit,
-                         const Vector &of_nodes) const
+                         const Vector *of_nodes = nullptr) const
       {
         FEValues<dim>                        values(element,
                              Quadrature<dim>(element.get_unit_support_points()),
                              update_quadrature_points);
         std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
-        const auto                          &owned = of_nodes.get_partitioner();
+        const auto &owned = (of_nodes ? *of_nodes : solution).get_partitioner();
         for (const auto &cell : handler.active_cell_iterators())
           if (!cell->is_artificial())
             {
