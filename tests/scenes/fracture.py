@@ -143,14 +143,14 @@ subsection Material
   end
 end
 subsection Boundary conditions
-  set Displacement = left: 0, free ; right: 0.15*t, free
+  set Displacement = left: 0, free ; right: 0.4*t^2, free
   set Symmetry     = bottom, top
 end
 subsection Elasticity
   set Solver = newton
 end
 subsection Time
-  set Time step = 0.004
+  set Time step = 0.005
 end
 """
 
@@ -180,10 +180,10 @@ def interfaces():
     same, none = (run_scene(scene, {**quiet, "Material/Interfaces": text, "Material/Fracture energy": "0.01", "Time/End time": "0.6"}, ranks=n)
                   for text, n in (("elsewhere/upper: fracture energy 0.01", 2), ("", 1)))
     table.add("an interface like the body, on two processes", same.total(DISSIPATED, PD, time=0.6), none.total(DISSIPATED, PD, time=0.6), relative=1e-9)
-    # Bonds that soften: the bar bears what its glue does, and gives off the energy of that; measured: 0.967, 1.0076. Steps must be short: 1.15 of the energy with five times as long ones.
+    # Bonds that soften: the bar bears what its glue does, and gives off the energy of that, whatever the steps; measured: 0.968, 1.0005.
     glued = run_scene(GLUED, QUIET)
     table.add("glue that softens: strength of a bar", largest(glued, "force on right in x") / 20 / 2, 1, absolute=0.05)
-    table.add("its energy", glued.total(DISSIPATED, PD, time=1) / 20 / 0.05, 1, absolute=0.012)
+    table.add("its energy", glued.total(DISSIPATED, PD, time=1) / 20 / 0.05, 1, absolute=0.005)
     table.show()
     for text, words in (("upper/lower: fracture energy 1", ("'Interfaces' in section 'Material'", "'lower'", "upper, elsewhere")),
                         ("upper/upper: fracture energy 1", ("two different phases",)), ("upper: fracture energy 1", ("'name/name'",)),
