@@ -201,7 +201,9 @@ namespace PeriDeal
         double entering = balance.sources;
         for (const auto &[name, value] : balance.sides)
           entering += value;
-        EXPECT_NEAR(body.op().entering(), entering, 1e-9 * std::abs(balance.sources));
+        EXPECT_NEAR(dealii::Utilities::MPI::sum(body.op().entering(), MPI_COMM_WORLD),
+                    entering,
+                    1e-9 * std::abs(balance.sources));
         EXPECT_NEAR(balance.imbalance(), 0., 1e-9 * std::abs(balance.sources));
       }
   }
